@@ -1,0 +1,3 @@
+"""Kinetag Studio: motion capture with cheap body-worn sensors."""
+
+__version__ = "0.1.0"

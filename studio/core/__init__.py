@@ -1,0 +1,1 @@
+"""What motion is: values and arithmetic, without Qt, files, threads or clocks."""
