@@ -1,0 +1,1 @@
+"""Bytes to samples: links to radios, ports, files and the simulator, and the dialects they speak."""
