@@ -1,0 +1,364 @@
+"""Every refusal in words: what happened, why, and what to do.
+
+The texts stand whole in one table, with the facts of ``core.errors`` as named placeholders, so that a
+translator sees sentences and not pieces. Words that come from files, ports or people are shown without
+control characters and shortened, because anybody may have written them.
+"""
+
+import math
+import string
+import unicodedata
+from collections.abc import Callable
+from dataclasses import fields
+from typing import Any, NamedTuple
+
+from studio.core import errors
+from studio.core.errors import StudioError
+
+LONGEST_FACT = 160  # characters; a longer path or reason is cut in the middle, so that its end can be read
+LONGEST_LIST = 6  # names; the rest is counted
+
+POSES = {"n": "N-pose", "t": "T-pose", "bow": "bow", "sit": "sitting pose"}
+
+
+class Message(NamedTuple):
+    """One message, each part a sentence or more, or empty."""
+
+    id: str
+    """``area.name``: what the manual and the log call it."""
+    what: str
+    why: str
+    do: str
+
+
+def sentences(error: StudioError) -> Message:
+    """Return what to show for ``error``, with its facts filled in."""
+    template = TEMPLATES[message_id(error)]
+    facts = {field.name: _in_words(field.name, getattr(error, field.name)) for field in fields(error)}
+    what, why, do = (_filled(part, facts) for part in template[1:])
+    return Message(template.id, what, why, do)
+
+
+def one_line(error: StudioError) -> str:
+    """Return the message as one line for a terminal."""
+    return " ".join(part for part in sentences(error)[1:] if part)
+
+
+def message_id(error: StudioError) -> str:
+    """Return the id of the message for ``error``; KeyError for a group, which nobody raises."""
+    choice = MESSAGE_OF[type(error)]
+    return choice if isinstance(choice, str) else choice(error)
+
+
+def _filled(template: str, facts: dict[str, str]) -> str:
+    text = template.format_map(facts)
+    # A limb may begin a sentence; a path or a port keeps its own first letter.
+    return text[:1].upper() + text[1:] if template.startswith("{place") else text
+
+
+def placeholders(template: str) -> set[str]:
+    """Return the names of the facts that ``template`` asks for."""
+    return {name for _, name, _, _ in string.Formatter().parse(template) if name}
+
+
+def _in_words(name: str, fact: Any) -> str:
+    if isinstance(fact, tuple):
+        return _listed([_in_words(name, part) for part in fact])
+    if isinstance(fact, float):
+        return _number_in_words(name, fact)
+    if isinstance(fact, int):
+        return f"{fact:,}"
+    text = _readable(str(fact))
+    if name in ("place", "places"):
+        return text.replace("_", " ")
+    return POSES.get(text, text) if name == "pose" else text
+
+
+def _number_in_words(name: str, value: float) -> str:
+    if name == "degrees":
+        return f"{value:.1f}°" if math.isfinite(value) else "an unknown angle"
+    return duration(value)
+
+
+def duration(seconds: float) -> str:
+    """Return a time span as people say it: ``0.4 s``, ``12 min 04.3 s``."""
+    if not math.isfinite(seconds):
+        return "an unknown time"
+    tenths = round(abs(seconds) * 10)
+    minutes, rest = divmod(tenths, 600)
+    sign = "-" if seconds < 0 and tenths else ""
+    return f"{sign}{minutes} min {rest / 10:04.1f} s" if minutes else f"{sign}{rest / 10:.1f} s"
+
+
+def _readable(text: str) -> str:
+    # Category C holds control, format (also the marks that turn the reading direction) and unassigned characters.
+    kept = "".join(" " if character.isspace() else character for character in text)
+    kept = "".join(character for character in kept if unicodedata.category(character)[0] != "C").strip()
+    if len(kept) > LONGEST_FACT:
+        half = LONGEST_FACT // 2
+        kept = f"{kept[:half]}…{kept[-half:]}"
+    return kept or "(nothing)"
+
+
+def _listed(names: list[str]) -> str:
+    if not names:
+        return "none"
+    if len(names) > LONGEST_LIST:
+        return f"{', '.join(names[:LONGEST_LIST])} and {len(names) - LONGEST_LIST} more"
+    return f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else names[0]
+
+
+def _by_id(*messages: Message) -> dict[str, Message]:
+    return {message.id: message for message in messages}
+
+
+TEMPLATES = _by_id(
+    # Connecting
+    Message(
+        "con.gone",
+        "{port} is not there.",
+        "It was pulled out, or it never had this name.",
+        "Plug the receiver in and look at the list of sources.",
+    ),
+    Message(
+        "con.busy",
+        "{port} is in use by another program.",
+        "Only one program at a time can listen to a port.",
+        "Close the other program, for example the Arduino serial monitor, and try again.",
+    ),
+    Message(
+        "con.perm",
+        "This computer does not let you open {port}.",
+        "Your user account has no right to use serial ports.",
+        "On Linux, add yourself to the group “dialout”, then log out and in again.",
+    ),
+    Message(
+        "con.source",
+        "The source “{source}” was not understood.",
+        "The reason: {reason}.",
+        "Write synthetic, serial:PORT or replay:TAKE.",
+    ),
+    Message(
+        "con.none",
+        "No sensor sent anything.",
+        "The source “{source}” was open all the time and stayed silent.",
+        "Switch a tag on and keep it within 3 m, or try the simulated suit with the source “synthetic”.",
+    ),
+    Message(
+        "con.garbage",
+        "Data arrived but made no sense.",
+        "{malformed} pieces came from “{source}” and none could be read.",
+        "Check the speed of the port and the kind of device.",
+    ),
+    Message(
+        "con.tag_newer",
+        "A tag or receiver speaks a newer language than this studio.",
+        "It speaks version {found}, the studio knows version {supported}.",
+        "Install the newest studio.",
+    ),
+    Message(
+        "con.tag_older",
+        "A tag or receiver speaks an older language than this studio.",
+        "It speaks version {found}, the studio knows version {supported}.",
+        "Put the newest firmware on it.",
+    ),
+    # Calibration and body calibration
+    Message(
+        "cal.not_still",
+        "Sensor {sensor} was never still for long enough.",
+        "{needed_s} of stillness are needed; the longest was {longest_s}.",
+        "Lay the sensor on a table that does not shake and record again.",
+    ),
+    Message(
+        "cal.file",
+        "The calibration file {file} cannot be used.",
+        "The reason: {reason}.",
+        "Choose another file, or calibrate again.",
+    ),
+    Message(
+        "cal.no_pose",
+        "The take holds no reference pose.",
+        "In {take_s} nobody marked when the person stood still in a known pose, "
+        "so the sensors cannot be related to the body.",
+        "Say when it was held, for example --pose n=2..5 for an N-pose from second 2 to second 5.",
+    ),
+    Message(
+        "cal.pose_outside",
+        "The {pose} cannot be used.",
+        "It was said to last from {from_s} to {to_s}; "
+        "the take lasts {take_s} and holds too few samples of that time.",
+        "Give a time of at least 1 s inside the take.",
+    ),
+    Message(
+        "cal.moved",
+        "{places} moved while the {pose} was held.",
+        "The movement was {degrees}.",
+        "Hold still until the long tone, or record the pose again.",
+    ),
+    Message(
+        "cal.heading",
+        "Headings unknown: {places}.",
+        "Without them it is not known which way these limbs faced in the held pose, and joint angles would be wrong.",
+        "Record a bow after the pose, strap the tags on as the picture shows and say so, "
+        "or use sensors that share one compass direction.",
+    ),
+    # Person and assignment
+    Message(
+        "set.place_twice",
+        "One place has two sensors, or one sensor two places.",
+        "Place: {place}. Sensor: {sensors}.",
+        "Give each place one sensor.",
+    ),
+    Message(
+        "set.sensor_unknown",
+        "There is no sensor {sensor} in this take.",
+        "The take holds: {known}.",
+        "Name one of these.",
+    ),
+    Message(
+        "set.place_unknown",
+        "“{place}” is not a place on the body.",
+        "The studio knows fifteen places, from head to right foot.",
+        "Name one of them, for example left forearm.",
+    ),
+    Message(
+        "set.person_code",
+        "“{code}” cannot stand for a person.",
+        "Takes are kept under a code, never under a name, so that a lost file tells nobody who was measured.",
+        "Use a letter and a number, for example P014.",
+    ),
+    # Recording
+    Message(
+        "rec.no_room",
+        "Recording did not start: the disk is full.",
+        "There is no room left in {folder}.",
+        "Free space or choose another folder.",
+    ),
+    Message(
+        "rec.disk_full",
+        "Recording stopped: the disk is full.",
+        "{kept_s} of the recording are safe in {folder}.",
+        "Free space, then record the next take.",
+    ),
+    Message(
+        "rec.folder",
+        "Recordings cannot be kept in {folder}.",
+        "The studio has no right to write there.",
+        "Choose another folder.",
+    ),
+    Message(
+        "rec.verify_fail",
+        "The take could not be read back as it was recorded.",
+        "{found} of {expected} samples came back from {path}.",
+        "Keep the file, check the disk, and record again.",
+    ),
+    # Opening
+    Message(
+        "open.not_take",
+        "There is no take at {path}.",
+        "A take is a folder that holds the file take.mcap.",
+        "Check the path.",
+    ),
+    Message(
+        "open.damaged",
+        "Nothing of the take can be used.",
+        "The file {path} is damaged; what could be recovered ends after {recovered_until_s}.",
+        "Restore the file from a copy.",
+    ),
+    Message(
+        "open.newer",
+        "The take was made by a newer studio.",
+        "{path} has format {found}; this studio reads up to {supported}.",
+        "Install the newest studio.",
+    ),
+    Message(
+        "open.refused",
+        "This file is not a safe take.",
+        "{path} was not opened: {reason}.",
+        "Ask where the file came from.",
+    ),
+    Message(
+        "open.no_truth",
+        "The take has no true motion beside it.",
+        "Only takes of the simulated suit know it, and {path} is not one of them.",
+        "Look at the take without --truth.",
+    ),
+    # Importing
+    Message(
+        "imp.line",
+        "{file} cannot be imported.",
+        "Line {line}: {reason}.",
+        "Correct the line, or export the recording again from the program it came from.",
+    ),
+    Message(
+        "imp.file",
+        "{file} cannot be imported.",
+        "The reason: {reason}.",
+        "Export the recording again from the program it came from.",
+    ),
+    Message(
+        "imp.map",
+        "The map {file} does not fit.",
+        "The reason: {reason}.",
+        "Correct the map; the manual shows each of its entries.",
+    ),
+    Message(
+        "imp.format",
+        "The format was not recognised.",
+        "Nothing that can import these was found: {paths}.",
+        "Describe the columns in a map and import with --format csv --map FILE.",
+    ),
+    # Exporting
+    Message(
+        "exp.nothing",
+        "There is nothing to export.",
+        "The take holds no {what}.",
+        "Choose something else to export, or another take.",
+    ),
+    Message(
+        "exp.target",
+        "{path} cannot be written.",
+        "It is open in another program, or the folder does not allow it.",
+        "Close the other program, or choose another name.",
+    ),
+    Message(
+        "exp.differs",
+        "The exported file is not right.",
+        "{path} was read again and compared with the motion: {difference}.",
+        "Do not use the file; please report this with the take.",
+    ),
+)
+
+MESSAGE_OF: dict[type[StudioError], str | Callable[[Any], str]] = {
+    errors.PortGone: "con.gone",
+    errors.PortBusy: "con.busy",
+    errors.PortForbidden: "con.perm",
+    errors.SourceUnreadable: "con.source",
+    errors.NoData: lambda error: "con.garbage" if error.malformed else "con.none",
+    errors.UnsupportedVersion: lambda error: "con.tag_newer" if error.found > error.supported else "con.tag_older",
+    errors.NotAtRest: "cal.not_still",
+    errors.CalibrationUnreadable: "cal.file",
+    errors.PoseMissing: "cal.no_pose",
+    errors.PoseTooShort: "cal.pose_outside",
+    errors.MovedDuringHold: "cal.moved",
+    errors.HeadingsUnknown: "cal.heading",
+    errors.PlaceTakenTwice: "set.place_twice",
+    errors.SensorUnknown: "set.sensor_unknown",
+    errors.PlaceUnknown: "set.place_unknown",
+    errors.PersonCodeInvalid: "set.person_code",
+    errors.DiskFull: lambda error: "rec.disk_full" if error.kept_s > 0 else "rec.no_room",
+    errors.FolderNotWritable: "rec.folder",
+    errors.VerificationFailed: "rec.verify_fail",
+    errors.NotATake: "open.not_take",
+    errors.Damaged: "open.damaged",
+    errors.WrittenByNewerStudio: "open.newer",
+    errors.TakeUnsafe: "open.refused",
+    errors.TruthMissing: "open.no_truth",
+    errors.RecordingUnreadable: lambda error: "imp.line" if error.line else "imp.file",
+    errors.MapFileInvalid: "imp.map",
+    errors.FormatUnknown: "imp.format",
+    errors.NothingToExport: "exp.nothing",
+    errors.CannotWrite: "exp.target",
+    errors.ReadBackDiffers: "exp.differs",
+}
+"""Which message tells of which error; a function where the facts decide."""
