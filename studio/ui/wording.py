@@ -102,7 +102,7 @@ def _readable(text: str) -> str:
 
 def _listed(names: list[str]) -> str:
     if not names:
-        return "none"
+        return "(nothing)"
     if len(names) > LONGEST_LIST:
         return f"{', '.join(names[:LONGEST_LIST])} and {len(names) - LONGEST_LIST} more"
     return f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else names[0]
