@@ -50,7 +50,7 @@ def looks_like_xio(paths: Sequence[Path]) -> bool:
 
 
 def read_xio(*paths: Path) -> Take:
-    """Read one folder of sensor folders, or several sensor folders; each sensor's place is guessed from its folder's name.
+    """Read one folder of sensor folders, or several sensor folders; places are guessed from their names.
 
     No pose is assumed: the take has no marks.
 
