@@ -11,7 +11,7 @@ from studio.core import rotation
 
 Array = NDArray[np.float64]
 
-LOCKED = 1e-9  # sine or cosine of half the middle angle; below it the outer axes are parallel to 1e-7 degrees
+LOCKED = 1e-12  # sine or cosine of half the middle angle; rounding of double precision leaves 1e-16
 
 
 def to_euler(a: ArrayLike, sequence: str) -> Array:
@@ -35,25 +35,25 @@ def to_euler(a: ArrayLike, sequence: str) -> Array:
     last = 3 - first - second
     sign = _parity(first, second, last)
     w, i, j, k = q[..., 0], q[..., 1 + first], q[..., 1 + second], sign * q[..., 1 + last]
-    shift = 0.0
-    if third != first:
-        # Turned by a quarter about the second axis the third axis lies on the first: i-j-k becomes
-        # i-j-i, whose half-angle sums are the quaternion's own components.
-        w, i, j, k = w - sign * j, i + sign * k, j + sign * w, k - sign * i
-        shift = -sign * np.pi / 2
-    return _proper(w, i, j, k, shift)
+    if third == first:
+        return _two_axes(w, i, j, k)
+    # Turned by a quarter about the second axis the third axis lies on the first: i-j-k becomes i-j-i,
+    # whose half-angle sums are the quaternion's own components.
+    angles = _two_axes(w + sign * j, i + sign * k, w - sign * j, i - sign * k)
+    angles[..., 1] = sign * (np.pi / 2 - angles[..., 1])
+    return angles
 
 
-def _proper(w: Array, i: Array, j: Array, k: Array, shift: float) -> Array:
-    """Return the angles of i-j-i from w + i + j + k of any length, ``shift`` added to the middle one."""
+def _two_axes(w: Array, i: Array, j: Array, k: Array) -> Array:
+    """Return the angles (..., 3) of i-j-i from w + i + j + k of any length."""
     cosine, sine = np.hypot(w, i), np.hypot(j, k)
-    length = np.maximum(np.hypot(cosine, sine), np.finfo(np.float64).tiny)
+    length = np.hypot(cosine, sine)
     half_sum, half_difference = np.arctan2(i, w), np.arctan2(k, j)
     half_sum = np.where(cosine < LOCKED * length, half_difference, half_sum)
     half_difference = np.where(sine < LOCKED * length, half_sum, half_difference)
-    out = np.empty((*w.shape, 3))
+    out = np.empty((*np.shape(w), 3))
     out[..., 0] = wrap(half_sum + half_difference)
-    out[..., 1] = 2 * np.arctan2(sine, cosine) + shift
+    out[..., 1] = 2 * np.arctan2(sine, cosine)
     out[..., 2] = wrap(half_sum - half_difference)
     return out
 
@@ -96,11 +96,14 @@ def unwrap_continuous(angles: ArrayLike, sequence: str) -> Array:
     """
     u = np.asarray(angles, np.float64)
     first, _, third = _axes(sequence)
+    proper = first == third
+    if np.isfinite(u).all():
+        return _nearest_set(u, proper)
     out = np.full(u.shape, np.nan)
     for column in np.ndindex(u.shape[1:-1]):
         rows = (slice(None), *column)
         finite = np.isfinite(u[rows]).all(axis=-1)
-        out[(finite, *column)] = _nearest_set(u[rows][finite], proper=first == third)
+        out[(finite, *column)] = _nearest_set(u[rows][finite], proper)
     return out
 
 
@@ -108,13 +111,14 @@ def _nearest_set(u: Array, proper: bool) -> Array:
     if not len(u):
         return u
     other = u + np.pi
-    other[:, 1] = -u[:, 1] if proper else np.pi - u[:, 1]
+    other[..., 1] = -u[..., 1] if proper else np.pi - u[..., 1]
     # Staying costs the same in both sets, and so does changing over: whether a row changes does not
     # depend on the set of the row before, so a running count replaces a loop over time.
-    stay = np.linalg.norm(wrap(u[1:] - u[:-1]), axis=-1)
-    change = np.linalg.norm(wrap(other[1:] - u[:-1]), axis=-1)
-    changed = np.concatenate([[0], np.cumsum(change < stay)]) % 2 == 1
-    return np.asarray(np.unwrap(np.where(changed[:, None], other, u), axis=0))
+    stay = (wrap(u[1:] - u[:-1]) ** 2).sum(axis=-1)
+    change = (wrap(other[1:] - u[:-1]) ** 2).sum(axis=-1)
+    changed = np.zeros(u.shape[:-1], bool)
+    changed[1:] = np.cumsum(change < stay, axis=0) % 2 == 1
+    return np.asarray(np.unwrap(np.where(changed[..., None], other, u), axis=0))
 
 
 def roll_pitch_yaw(world_from_body: ArrayLike) -> Array:

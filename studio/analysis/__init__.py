@@ -1,0 +1,1 @@
+"""Numbers out of motions: joint angles."""
