@@ -10,6 +10,7 @@ from collections.abc import Callable, Sequence
 from enum import IntEnum
 from typing import Final, Literal, NamedTuple
 
+from studio.acquisition.dialects import smallest_three
 from studio.acquisition.dialects.dialect import Reading, Traits
 from studio.core.frames import GRAVITY
 from studio.core.sample import MISSING_QUATERNION, MISSING_VECTOR, NAN, Correction, Quaternion, SensorId, Vector
@@ -96,10 +97,6 @@ _DEVICE = struct.Struct(_HEAD + "IHBBHBBHIB")
 _COEFFICIENTS = struct.Struct(_HEAD + "B3fH3sB")
 _SYNC = struct.Struct("<BBBBIIBBBI5sHB")
 
-_FIELD_SCALE = math.sqrt(2.0) * 16384.0
-_COMPONENT = tuple((field - 16384) / _FIELD_SCALE for field in range(32768))
-_ROUNDING = 1e-3  # of a squared component; half a field step of 2.2e-5 gives 1e-4
-_LEAST_LARGEST = 0.25 - _ROUNDING  # square of the largest of four components whose squares sum to 1
 _BATTERY = (*(count * BATTERY_UNIT for count in range(201)), *[NAN] * 55)
 
 
@@ -127,7 +124,7 @@ def encode_sample(
     """Return the advert (31 bytes) of one sample; the clock in ticks, rates in rad/s, acceleration in m/s²."""
     counts = (*(_int16(v / RATE_UNIT) for v in rate), *(_int16(v / ACCELERATION_UNIT) for v in acceleration))
     head = _head(Packet.SAMPLE, number, sequence, clock, flags)
-    return PREFIX + _SAMPLE.pack(*head, *_pack_orientation(orientation), *counts, _battery(battery))
+    return PREFIX + _SAMPLE.pack(*head, *smallest_three.pack(orientation), *counts, _battery(battery))
 
 
 def encode_integral(
@@ -163,7 +160,7 @@ def encode_info(
     """Return the advert that tells firmware (major << 8 | minor), battery, temperature and calibration."""
     head = _head(Packet.INFO, number, sequence, clock, flags)
     facts = (firmware, round(battery_volt * 1000), _int16(temperature / TEMPERATURE_UNIT), calibration_crc, serial)
-    return PREFIX + _INFO.pack(*head, *_pack_orientation(orientation), *facts, _battery(battery))
+    return PREFIX + _INFO.pack(*head, *smallest_three.pack(orientation), *facts, _battery(battery))
 
 
 def encode_device(
@@ -184,7 +181,7 @@ def encode_device(
     """Return the advert that tells which chip measures, and how it is set."""
     head = _head(Packet.DEVICE, number, sequence, clock, flags)
     facts = (hardware, who_am_i, gyro_range_deg_s, accel_range_g, bandwidth_hz, internal_rate_hz, serial)
-    return PREFIX + _DEVICE.pack(*head, *_pack_orientation(orientation), *facts, _battery(battery))
+    return PREFIX + _DEVICE.pack(*head, *smallest_three.pack(orientation), *facts, _battery(battery))
 
 
 def encode_coefficients(
@@ -252,7 +249,7 @@ def _payload_in(advert: bytes, at: int, size: int) -> bytes | Refusal:
 
 def _decode_sample(payload: bytes, sensor: SensorId, rssi: float) -> Reading | Refusal:
     _, _, number, sequence, low, high, flags, q_low, q_high, gx, gy, gz, ax, ay, az, battery = _SAMPLE.unpack(payload)
-    orientation = _unpack_orientation(q_low, q_high)
+    orientation = smallest_three.unpack(q_low, q_high)
     if orientation is None:
         return "orientation"
     counts = (gx, gy, gz, ax, ay, az)
@@ -291,7 +288,7 @@ def _decode_integral(payload: bytes, sensor: SensorId, rssi: float) -> Reading |
 def _decode_info(payload: bytes, sensor: SensorId, rssi: float) -> Reading | Refusal:
     _, _, number, sequence, low, high, flags, q_low, q_high, *told = _INFO.unpack(payload)
     firmware, millivolt, temperature, crc, serial, battery = told
-    orientation = _unpack_orientation(q_low, q_high)
+    orientation = smallest_three.unpack(q_low, q_high)
     if orientation is None:
         return "orientation"
     facts: dict[str, str | int | float] = {
@@ -307,7 +304,7 @@ def _decode_info(payload: bytes, sensor: SensorId, rssi: float) -> Reading | Ref
 def _decode_device(payload: bytes, sensor: SensorId, rssi: float) -> Reading | Refusal:
     _, _, number, sequence, low, high, flags, q_low, q_high, *told = _DEVICE.unpack(payload)
     hardware, who_am_i, gyro_range, accel_range, bandwidth, internal_rate, serial, battery = told
-    orientation = _unpack_orientation(q_low, q_high)
+    orientation = smallest_three.unpack(q_low, q_high)
     if orientation is None:
         return "orientation"
     facts: dict[str, str | int | float] = {
@@ -389,37 +386,6 @@ _DECODERS: Final[dict[int, Callable[[bytes, SensorId, float], Reading | Sync | R
 def _head(packet: Packet, number: int, sequence: int, clock: int, flags: int) -> tuple[int, ...]:
     kind = VERSION << 4 | packet
     return MAGIC, kind, number, sequence & 0xFF, clock & 0xFFFF, clock >> 16 & 0xFF, flags & 0xFF
-
-
-def _pack_orientation(orientation: Quaternion) -> tuple[int, int]:
-    """Return the low 32 and high 16 bits of the smallest-three form."""
-    index = max(range(4), key=lambda i: abs(orientation[i]))
-    scale = _FIELD_SCALE / math.copysign(math.sqrt(sum(c * c for c in orientation)), orientation[index])
-    rest = [c for i, c in enumerate(orientation) if i != index]
-    a, b, c = (min(max(math.floor(16384.5 + v * scale), 0), 32767) for v in rest)
-    word = a | b << 15 | c << 30 | index << 46
-    return word & 0xFFFFFFFF, word >> 32
-
-
-def _unpack_orientation(low: int, high: int) -> Quaternion | None:
-    """Return the unit quaternion of the smallest-three form, None when no tag can have sent it."""
-    a = _COMPONENT[low & 0x7FFF]
-    b = _COMPONENT[low >> 15 & 0x7FFF]
-    c = _COMPONENT[(low >> 30 | high << 2) & 0x7FFF]
-    aa, bb, cc = a * a, b * b, c * c
-    square = 1.0 - aa - bb - cc
-    at_most = square + _ROUNDING
-    if square < _LEAST_LARGEST or aa > at_most or bb > at_most or cc > at_most or high & 0x2000:
-        return None
-    largest = math.sqrt(square)
-    index = high >> 14
-    if index == 0:
-        return largest, a, b, c
-    if index == 1:
-        return a, largest, b, c
-    if index == 2:
-        return a, b, largest, c
-    return a, b, c, largest
 
 
 def _int16(count: float) -> int:
