@@ -51,19 +51,26 @@ def put_in_order(time: NDArray[np.float64]) -> Order:
     return Order(rows[new], len(time) - int(new.sum()), late)
 
 
-def count_frames(time: NDArray[np.float64]) -> tuple[NDArray[np.int64], float]:
-    """Return each row's number of nominal frames since the first, and the nominal frame in s.
+def median_interval(time: NDArray[np.float64]) -> float:
+    """Return the median of the intervals, s; of two middle ones the lower, so that it is one that exists."""
+    return float(np.sort(np.diff(time))[(len(time) - 2) // 2])
 
-    The nominal frame is the mean of the intervals that lie within half of their median, so that stamps
-    rounded to whole milliseconds give it too. A lost sample is a missing number.
+
+def count_frames(time: NDArray[np.float64], nominal: float) -> tuple[NDArray[np.int64], float]:
+    """Return each row's number of frames since the first, and the length of a frame in s.
+
+    A frame is the mean of the intervals that lie within half of the nominal one, so that stamps rounded to
+    whole milliseconds give it too. A lost sample is a missing number.
 
     Parameters
     ----------
     time : (n,), s
         Strictly increasing, at least two.
+    nominal : s
+        From one sample to the next when none is lost.
     """
     step = np.diff(time)
-    median = float(np.median(step))
-    frame_s = float(step[np.abs(step - median) < 0.5 * median].mean())
+    single = step[np.abs(step - nominal) < 0.5 * nominal]
+    frame_s = float(single.mean()) if len(single) else nominal
     frames = np.maximum(np.rint(step / frame_s), 1.0).astype(np.int64)
     return np.concatenate([np.zeros(1, np.int64), np.cumsum(frames)]), frame_s

@@ -22,7 +22,8 @@ BLANKS = ""
 
 _DELIMITERS = (";", "\t", ",", BLANKS)  # in the order of trust: when two explain a file equally well, the first holds
 _LOOKED_AT = 200  # lines from which the layout is recognised
-_BLOCK = 8192  # rows parsed at once; one bad row sends only its block to the slow path
+_BLOCK = 8192  # rows parsed at once; a block with a bad row is halved
+_ROW_BY_ROW = 64  # rows; halving goes no further, since calling the fast parser costs as much
 _MISSING = frozenset({"", "na", "n/a", "null", "none", "nan"})
 
 
@@ -68,18 +69,30 @@ class Table:
         RecordingUnreadable
             When not one row is good.
         """
-        blocks, bad = [], []
+        blocks: list[NDArray[np.float64]] = []
+        bad: list[int] = []
         for start in range(0, len(self.lines), _BLOCK):
-            block = self.lines[start : start + _BLOCK]
-            values = self._parse_quickly(block, columns)
-            if values is None:
-                values, wrong = self._parse_row_by_row(block, columns)
-                bad += [self.first_line + start + row for row in wrong]
-            blocks.append(values)
+            self._parse(start, min(start + _BLOCK, len(self.lines)), columns, blocks, bad)
         values = np.concatenate(blocks)
         if not len(values):
             raise RecordingUnreadable(self.file, bad[0] if bad else 0, "no row holds numbers in the columns asked for")
         return Rows(values, len(bad), bad[0] if bad else 0)
+
+    def _parse(
+        self, start: int, end: int, columns: Sequence[int], blocks: list[NDArray[np.float64]], bad: list[int]
+    ) -> None:
+        """Append the good rows of ``lines[start:end]`` to ``blocks`` and the line numbers of the others to ``bad``."""
+        block = self.lines[start:end]
+        values = self._parse_quickly(block, columns)
+        if values is None and end - start > _ROW_BY_ROW:
+            middle = (start + end) // 2
+            self._parse(start, middle, columns, blocks, bad)
+            self._parse(middle, end, columns, blocks, bad)
+            return
+        if values is None:
+            values, wrong = self._parse_row_by_row(block, columns)
+            bad += [self.first_line + start + row for row in wrong]
+        blocks.append(values)
 
     def _parse_quickly(self, block: Sequence[str], columns: Sequence[int]) -> NDArray[np.float64] | None:
         """Return the block's numbers, None when one of its rows needs a closer look."""
@@ -87,6 +100,9 @@ class Table:
             regular = all(len(line.split()) == self.width for line in block)
         else:
             regular = all(line.count(self.delimiter) == self.width - 1 for line in block)
+            pair = 2 * self.delimiter
+            if regular and any(pair in line or line.endswith(self.delimiter) for line in block):
+                block = [_fill(line, self.delimiter) for line in block]
         if not regular:
             return None
         try:
@@ -159,6 +175,14 @@ def _split(line: str, delimiter: str) -> list[str]:
     if '"' in line:
         return next(csv.reader([line], delimiter=delimiter, skipinitialspace=True))
     return line.split(delimiter)
+
+
+def _fill(line: str, delimiter: str) -> str:
+    """Return the line with ``nan`` in its empty cells, which the fast parser does not know."""
+    pair, filled = 2 * delimiter, f"{delimiter}nan{delimiter}"
+    # Twice: neighbouring empty cells share a delimiter.
+    line = f"{delimiter}{line}{delimiter}".replace(pair, filled).replace(pair, filled)
+    return line[1:-1]
 
 
 def _number(cell: str) -> float:

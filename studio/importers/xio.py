@@ -20,7 +20,7 @@ from studio.core.errors import FormatUnknown, RecordingUnreadable
 from studio.core.frames import GRAVITY
 from studio.core.sample import SensorId, SensorInfo
 from studio.core.take import Assignment, Setup, Take
-from studio.importers.clock import count_frames, put_in_order
+from studio.importers.clock import count_frames, median_interval, put_in_order
 from studio.importers.place_words import guess_assignment
 from studio.importers.streams import Measured, line_up
 from studio.importers.table import open_table
@@ -138,7 +138,7 @@ def _read_sensor(folder: Path, sensor: SensorId, told: Mapping[str, str]) -> Mea
     leading = inertial or oriented
     if leading is None or len(leading.stamps) < 2:
         raise RecordingUnreadable(str(folder), 0, "fewer than two samples have a time")
-    frame, frame_s = count_frames(leading.stamps)
+    frame, frame_s = count_frames(leading.stamps, median_interval(leading.stamps))
     readings = inertial.values if inertial else np.full((len(frame), 6), np.nan)
     facts: dict[str, str | int | float] = {**told, "folder": folder.name}
     facts["rows_dropped"] = sum(series.dropped for series in (inertial, oriented) if series)
