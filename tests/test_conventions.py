@@ -185,7 +185,8 @@ def test_the_start_loads_nothing_heavy():
     run = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False)
 
     assert run.returncode == 0, run.stderr
-    assert {module.split(".")[0] for module in run.stdout.split()} & {"scipy", "pandas", "PySide6", "pyqtgraph"} == set()
+    loaded = {module.split(".")[0] for module in run.stdout.split()}
+    assert loaded & {"scipy", "pandas", "PySide6", "pyqtgraph"} == set()
 
 
 def test_each_folder_of_tests_mirrors_a_folder():
