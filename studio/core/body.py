@@ -185,7 +185,9 @@ class Skeleton:
         """Return heel and ball under the ankle, (2, 3), m, foot axes."""
         return np.array([HEEL, BALL]) * self.stature
 
-    def joint_positions(self, world_from_segment: NDArray[np.float64], hips: NDArray[np.float64]) -> NDArray[np.float64]:
+    def joint_positions(
+        self, world_from_segment: NDArray[np.float64], hips: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
         """Return where the joints are: forward kinematics.
 
         Parameters

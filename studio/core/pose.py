@@ -16,19 +16,20 @@ Method = Literal["live", "offline"]
 
 @dataclass(frozen=True)
 class Motion:
-    """The body over time, on one regular grid."""
+    """The body over time."""
 
     time: NDArray[np.float64]
-    """(n,), s of take time."""
+    """(n,), s of take time, increasing; regular for method ``offline``, the moments of the frames for ``live``."""
     frame_s: float
-    """s from one row to the next."""
+    """s, nominal, from one row to the next."""
     world_from_segment: NDArray[np.float64]
     """(n, 23, 4)."""
     hips: NDArray[np.float64]
     """(n, 3), m, world: position of the Hips joint."""
     skeleton: Skeleton
     measured: Mapping[Place, NDArray[np.bool_]]
-    """For each assigned place, (n,): True where its sensor was sending (gaps up to 1 s interpolated) and its heading is known."""
+    """For each assigned place, (n,): True where its sensor was sending (gaps up to 1 s are bridged) and its
+    heading is known."""
     lost: Mapping[Place, NDArray[np.bool_]]
     """For each assigned place, (n,): True where the sample itself was lost and stands interpolated."""
     alignment: Alignment
@@ -47,4 +48,5 @@ class Motion:
 
     def parent_from_child(self, parent: Segment, child: Segment) -> NDArray[np.float64]:
         """Return the rotation of a joint, (n, 4), in segment axes."""
-        return rotation.multiply(rotation.inverse(self.world_from_segment[:, parent]), self.world_from_segment[:, child])
+        world_from_parent = self.world_from_segment[:, parent]
+        return rotation.multiply(rotation.inverse(world_from_parent), self.world_from_segment[:, child])

@@ -11,6 +11,7 @@ WINDOW = 8  # blocks: 2 s, the shortest rest worth averaging
 RATE_SPREAD_TABLE = math.radians(0.3)  # rad/s, SD of block means: a tag on a table stays below 0.05 °/s
 RATE_SPREAD_WORN = math.radians(3.0)  # rad/s: a standing person sways at 0.5 to 1.5 °/s
 ACCELERATION_SPREAD = 0.4  # m/s², SD of block means; turning by 2.5° changes gravity by as much
+RESOLUTION = math.radians(0.005)  # rad/s; a mean of 0.003° quaternions over a few seconds cannot be surer
 LARGEST_OFFSET = math.radians(25.0)  # rad/s; data sheet of the MPU-6050: ±20 °/s, and warmth on top
 
 
@@ -87,6 +88,7 @@ def _stretches(still: NDArray[np.bool_]) -> list[tuple[int, int]]:
 def combine(
     offset: NDArray[np.float64], sigma: NDArray[np.float64], prior_sigma: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return offset and sigma (3,) of a measured rest weighed against "the stored offset is right within prior_sigma"."""
+    """Return offset and sigma (3,) of a measured rest, weighed against the belief that nothing more than
+    ``prior_sigma`` (rad/s) is left to subtract."""
     weight = prior_sigma**2 / (prior_sigma**2 + sigma**2)
     return weight * offset, np.sqrt(weight) * sigma

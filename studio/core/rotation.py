@@ -12,6 +12,8 @@ Array = NDArray[np.float64]
 IDENTITY: Array = np.array([1.0, 0.0, 0.0, 0.0])
 IDENTITY.flags.writeable = False
 
+_CONJUGATE: Array = np.array([1.0, -1.0, -1.0, -1.0])
+
 SMALL_ANGLE = 1e-8  # rad; below it sin(x)/x is 1 to double precision
 
 
@@ -30,7 +32,8 @@ def multiply(a: ArrayLike, b: ArrayLike) -> Array:
 
 def inverse(a: ArrayLike) -> Array:
     """Return ``b_from_a`` for a unit ``a_from_b``, (..., 4)."""
-    return np.asarray(a, np.float64) * np.array([1.0, -1.0, -1.0, -1.0])
+    conjugate: Array = np.asarray(a, np.float64) * _CONJUGATE
+    return conjugate
 
 
 def rotate(a: ArrayLike, v: ArrayLike) -> Array:
@@ -121,16 +124,16 @@ def from_matrix(m: ArrayLike) -> Array:
     """Return unit quaternions with w >= 0 of rotation matrices, (..., 3, 3) to (..., 4)."""
     r = np.asarray(m, np.float64)
     xx, yy, zz = r[..., 0, 0], r[..., 1, 1], r[..., 2, 2]
+    skew = [r[..., 2, 1] - r[..., 1, 2], r[..., 0, 2] - r[..., 2, 0], r[..., 1, 0] - r[..., 0, 1]]
+    xy, xz, yz = r[..., 0, 1] + r[..., 1, 0], r[..., 0, 2] + r[..., 2, 0], r[..., 1, 2] + r[..., 2, 1]
     # All four candidates; the one with the largest leading term is the accurate one (Shepperd 1978).
-    candidates = np.stack(
-        [
-            np.stack([1 + xx + yy + zz, r[..., 2, 1] - r[..., 1, 2], r[..., 0, 2] - r[..., 2, 0], r[..., 1, 0] - r[..., 0, 1]], -1),
-            np.stack([r[..., 2, 1] - r[..., 1, 2], 1 + xx - yy - zz, r[..., 0, 1] + r[..., 1, 0], r[..., 0, 2] + r[..., 2, 0]], -1),
-            np.stack([r[..., 0, 2] - r[..., 2, 0], r[..., 0, 1] + r[..., 1, 0], 1 - xx + yy - zz, r[..., 1, 2] + r[..., 2, 1]], -1),
-            np.stack([r[..., 1, 0] - r[..., 0, 1], r[..., 0, 2] + r[..., 2, 0], r[..., 1, 2] + r[..., 2, 1], 1 - xx - yy + zz], -1),
-        ],
-        axis=-2,
-    )
+    rows = [
+        [1 + xx + yy + zz, *skew],
+        [skew[0], 1 + xx - yy - zz, xy, xz],
+        [skew[1], xy, 1 - xx + yy - zz, yz],
+        [skew[2], xz, yz, 1 - xx - yy + zz],
+    ]
+    candidates = np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
     best = np.argmax(np.stack([candidates[..., i, i] for i in range(4)], axis=-1), axis=-1)
     chosen = np.take_along_axis(candidates, best[..., None, None], axis=-2)[..., 0, :]
     unit = normalise(chosen)

@@ -79,7 +79,9 @@ def _run(stream: Stream, rows: NDArray[np.intp], wanted: Correction | None) -> R
     frame_s = stream.info.frame_s
     if uses_wire_quaternions(stream.info):
         increments = np.zeros((len(grid), 3))
-        increments[1:] = rotation.to_rotation_vector(rotation.multiply(rotation.inverse(orientation[:-1]), orientation[1:]))
+        increments[1:] = rotation.to_rotation_vector(
+            rotation.multiply(rotation.inverse(orientation[:-1]), orientation[1:])
+        )
         applied = stream.info.correction
     elif stream.info.has_rate:
         rate = np.stack([np.interp(grid, frames, stream.rate[rows, axis]) for axis in range(3)], axis=1)
@@ -91,10 +93,14 @@ def _run(stream: Stream, rows: NDArray[np.intp], wanted: Correction | None) -> R
         increments, applied = np.zeros((len(grid), 3)), None
     if wanted is not None:
         increments[1:] = recorrect(increments[1:], frame_s, applied, wanted)
-    return Run(time, increments, _bridge_vectors(stream, rows, frames, grid), orientation, lost, int(stream.epoch[rows[0]]))
+    return Run(
+        time, increments, _bridge_vectors(stream, rows, frames, grid), orientation, lost, int(stream.epoch[rows[0]])
+    )
 
 
-def recorrect(increments: NDArray[np.float64], frame_s: float, applied: Correction | None, wanted: Correction) -> NDArray[np.float64]:
+def recorrect(
+    increments: NDArray[np.float64], frame_s: float, applied: Correction | None, wanted: Correction
+) -> NDArray[np.float64]:
     """Return increments (n, 3) as they would be with another offset and gain than those applied by the tag."""
     rate = increments / frame_s
     if applied is not None:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 SensorId = NewType("SensorId", str)
-"""``tag:<serial hex>``, ``<dialect>:<USB serial>:<letter or index>`` or ``file:<slug>``; stable over ports and systems."""
+"""``tag:<serial hex>``, ``<dialect>:<USB serial>:<letter or index>`` or ``file:<slug>``; the same on any port."""
 
 Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]

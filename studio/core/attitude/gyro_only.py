@@ -68,7 +68,9 @@ def cumulative_product(steps: NDArray[np.float64]) -> NDArray[np.float64]:
     count = len(steps)
     length = max(1, math.isqrt(count))
     blocks = -(-count // length)
-    padded = np.concatenate([steps, np.tile(rotation.IDENTITY, (blocks * length - count, 1))]).reshape(blocks, length, 4)
+    padded = np.concatenate([steps, np.tile(rotation.IDENTITY, (blocks * length - count, 1))]).reshape(
+        blocks, length, 4
+    )
     for column in range(1, length):
         padded[:, column] = rotation.multiply(padded[:, column - 1], padded[:, column])
     before = rotation.IDENTITY

@@ -1,0 +1,323 @@
+"""How each sensor sits on its segment and which way it faced, out of held poses (contracts §3).
+
+Without a magnetometer every sensor's attitude has its own unknown heading, and one held pose gives three
+equations for four unknowns. The fourth fact is taken in this order, and stored: a second hold (a bow, or
+N-pose after T-pose for the arms), a common heading sent by the source, the strap rule. Paper 002's bias
+quaternion ``Q_B = Q_IMU^-1 Q_R`` is the case in which the fourth fact is "the heading is already right";
+its two-sided form is ``world_from_segment = heading * world_from_sensor * sensor_from_segment``.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from studio.core import rotation
+from studio.core.body import SEGMENT_OF, Place, reference_pose
+from studio.core.errors import HeadingsUnknown, MovedDuringHold, PoseMissing, PoseTooShort
+from studio.core.facing import facing_from_hinges
+from studio.core.frames import UP
+from studio.core.sample import SensorId
+from studio.core.strapping import STRAP_SIGMA, strap_rule
+from studio.core.take import Alignment, Assignment, HeadingSource, LimbAlignment, Mark, Mounting
+from studio.core.track import SensorTrack
+
+STILLEST = 1.0  # s of the hold that are averaged
+LARGEST_DEVIATION = math.radians(3.0)  # from the mean during that second
+LARGEST_SPEED = math.radians(10.0)  # rad/s, root mean square during that second
+SMALLEST_BOW = math.radians(20.0)  # of tilt between the holds
+BOW_AXIS_SIGMA = math.radians(1.5)  # joints are no perfect hinges: the bow itself is not purely sagittal
+TILT_SIGMA = math.radians(0.5)  # accelerometer of 5-10 mg
+COMMON_WORLD_SIGMA = math.radians(15.0)  # facing taken from the knees' and elbows' bending
+STRAP_CONTRADICTION = math.radians(45.0)  # gravity disagrees by more: the tag does not sit as the rule says
+
+# The way each segment turns about its right axis in the bow: trunk, head, shanks and (heels lifted) feet
+# tip forwards (negative), arms and thighs are lifted forwards (positive).
+_LIFTED = frozenset(
+    {
+        Place.LEFT_UPPER_ARM,
+        Place.RIGHT_UPPER_ARM,
+        Place.LEFT_FOREARM,
+        Place.RIGHT_FOREARM,
+        Place.LEFT_HAND,
+        Place.RIGHT_HAND,
+        Place.LEFT_THIGH,
+        Place.RIGHT_THIGH,
+    }
+)
+
+Tracks = Mapping[SensorId, SensorTrack]
+
+
+@dataclass(frozen=True)
+class Hold:
+    """One sensor while a pose was held."""
+
+    attitude: NDArray[np.float64]
+    """(4,), world_from_sensor, Markley's mean over the stillest second."""
+    device: NDArray[np.float64]
+    """(4,), what the device said meanwhile; NaN when nothing."""
+    spread: float
+    """rad, root mean square deviation from the mean."""
+    largest: float
+    """rad, largest deviation from the mean."""
+    speed: float
+    """rad/s, root mean square."""
+    group: int
+    """Heading group of the track."""
+
+    def up(self) -> NDArray[np.float64]:
+        """Return the upward direction (3,) in sensor axes."""
+        return rotation.rotate(rotation.inverse(self.attitude), UP)
+
+
+def align(
+    tracks: Tracks, assignment: Assignment, poses: Sequence[Mark], mounting: Mounting, take_s: float
+) -> Alignment:
+    """Return the alignment of all assigned places.
+
+    Parameters
+    ----------
+    poses : sequence of Mark
+        Kind ``pose``, labels ``n``, ``t``, ``bow``; the first ``n`` (else ``t``) is the reference.
+    take_s : float, s
+        Length of the take, for the messages.
+
+    Raises
+    ------
+    PoseMissing, PoseTooShort, MovedDuringHold
+        HeadingsUnknown is not raised here: a limb without heading is ``unknown`` (see ``require_headings``).
+    """
+    reference = reference_mark(poses)
+    if reference is None:
+        raise PoseMissing(take_s)
+    worn = {place: tracks[sensor] for place, sensor in assignment.sensors.items() if sensor in tracks}
+    first = hold_all(worn, reference, take_s)
+    moved = {p: h for p, h in first.items() if h.largest > LARGEST_DEVIATION or h.speed > LARGEST_SPEED}
+    if moved:
+        degrees = tuple(round(math.degrees(hold.largest), 1) for hold in moved.values())
+        raise MovedDuringHold(reference.label, tuple(place.value for place in moved), degrees)
+    others = {
+        label: hold_all(worn, mark, take_s, required=False)
+        for label in ("bow", "n", "t")
+        if (mark := _last(poses, label, reference)) is not None
+    }
+    facing = _common_facing(worn, first, reference)
+    limbs = {}
+    for place, hold in first.items():
+        elsewhere = {label: holds[place] for label, holds in others.items() if place in holds}
+        limbs[place] = _align_limb(place, hold, reference.label, elsewhere, facing.get(place), mounting)
+    return Alignment("t" if reference.label == "t" else "n", reference.time, reference.end, limbs)
+
+
+def require_headings(alignment: Alignment) -> None:
+    """Raise HeadingsUnknown when no limb's heading is known: then no joint angle means anything."""
+    unknown = tuple(place.value for place, limb in alignment.limbs.items() if limb.source == "unknown")
+    if len(unknown) == len(alignment.limbs):
+        raise HeadingsUnknown(unknown)
+
+
+def reference_mark(poses: Sequence[Mark]) -> Mark | None:
+    """Return the hold that fixes the body: the first N-pose, else the first T-pose."""
+    for label in ("n", "t"):
+        for mark in poses:
+            if mark.label == label:
+                return mark
+    return None
+
+
+def _last(poses: Sequence[Mark], label: str, reference: Mark) -> Mark | None:
+    found = [mark for mark in poses if mark.label == label and mark is not reference]
+    return found[-1] if found else None
+
+
+def hold_all(
+    worn: Mapping[Place, SensorTrack], mark: Mark, take_s: float, *, required: bool = True
+) -> dict[Place, Hold]:
+    """Return each place's hold over the second in which the whole body was stillest."""
+    start = stillest_second(list(worn.values()), mark)
+    holds: dict[Place, Hold] = {}
+    for place, track in worn.items():
+        rows = track.rows(start, min(start + STILLEST, max(mark.end, mark.time)))
+        if len(rows) == 0 and mark.end - mark.time < STILLEST:
+            rows = _nearest(track, mark.time)
+        if len(rows) == 0 or len(set(track.group[rows].tolist())) != 1:
+            continue
+        holds[place] = _hold(track, rows)
+    if required and not holds:
+        raise PoseTooShort(mark.label, mark.time, mark.end, take_s)
+    return holds
+
+
+def _nearest(track: SensorTrack, time: float) -> NDArray[np.intp]:
+    """Return the one frame next to an instant: a pose given as a single moment."""
+    if len(track.time) == 0:
+        return np.array([], np.intp)
+    row = int(np.argmin(np.abs(track.time - time)))
+    near = abs(track.time[row] - time) <= 2 * track.info.frame_s
+    return np.array([row] if near else [], np.intp)
+
+
+def stillest_second(tracks: Sequence[SensorTrack], mark: Mark) -> float:
+    """Return the start of the second of a hold in which all sensors together turned least, s."""
+    latest = mark.end - STILLEST
+    if not latest > mark.time:
+        return mark.time
+    starts = np.linspace(mark.time, latest, max(2, round((latest - mark.time) / 0.1) + 1))
+    cost = np.zeros(len(starts))
+    for track in tracks:
+        energy = np.concatenate([[0.0], np.cumsum(track.speed**2)])
+        a, b = np.searchsorted(track.time, starts), np.searchsorted(track.time, starts + STILLEST)
+        cost += (energy[b] - energy[a]) / np.maximum(b - a, 1)
+    return float(starts[int(np.argmin(cost))])
+
+
+def _hold(track: SensorTrack, rows: NDArray[np.intp]) -> Hold:
+    attitude = rotation.mean(track.attitude[rows])
+    deviation = rotation.angle_between(attitude, track.attitude[rows])
+    device = track.device[rows]
+    known = np.isfinite(device).all(axis=1)
+    return Hold(
+        attitude=attitude,
+        device=rotation.mean(device[known]) if known.any() else np.full(4, np.nan),
+        spread=float(np.sqrt(np.mean(deviation**2))),
+        largest=float(deviation.max()),
+        speed=float(np.sqrt(np.mean(track.speed[rows] ** 2))) if len(rows) > 1 else 0.0,
+        group=int(track.group[rows[0]]),
+    )
+
+
+def _common_facing(
+    worn: Mapping[Place, SensorTrack], first: Mapping[Place, Hold], reference: Mark
+) -> dict[Place, NDArray[np.float64]]:
+    """Return for each sensor with a common heading its attitude (4,) at the hold, turned so that the wearer faces x."""
+    common = {p: h for p, h in first.items() if worn[p].info.common_world and np.isfinite(h.device).all()}
+    headed = {}
+    for place, hold in common.items():
+        turn = rotation.twist_about(rotation.multiply(hold.device, rotation.inverse(hold.attitude)), 2)
+        headed[place] = (float(turn), hold)
+    turns = {place: turn for place, (turn, _) in headed.items()}
+    facing = facing_from_hinges({place: worn[place] for place in common}, turns, reference.time)
+    if facing is None:
+        return {}
+    return {
+        place: rotation.multiply(rotation.about(2, turn - facing), hold.attitude)
+        for place, (turn, hold) in headed.items()
+    }
+
+
+def _align_limb(
+    place: Place,
+    hold: Hold,
+    pose: str,
+    others: Mapping[str, Hold],
+    headed: NDArray[np.float64] | None,
+    mounting: Mounting,
+) -> LimbAlignment:
+    segment = SEGMENT_OF[place]
+    reference = reference_pose(pose)[segment]
+    up_in_segment = rotation.rotate(rotation.inverse(reference), UP)
+    sensor_from_segment: NDArray[np.float64] | None = None
+    source: HeadingSource = "unknown"
+    sigma = math.pi
+    if "bow" in others:
+        sensor_from_segment, sigma = from_bow(hold.up(), others["bow"].up(), up_in_segment, place in _LIFTED)
+        source = "bow"
+    if sensor_from_segment is None:
+        for label in ("n", "t"):
+            if label in others:
+                other_up = rotation.rotate(rotation.inverse(reference_pose(label)[segment]), UP)
+                sensor_from_segment, sigma = from_two_poses(hold.up(), others[label].up(), up_in_segment, other_up)
+                source = "two poses"
+    if sensor_from_segment is None and headed is not None:
+        sensor_from_segment = rotation.multiply(rotation.inverse(headed), reference)
+        source, sigma = "common world", COMMON_WORLD_SIGMA
+    if sensor_from_segment is None and mounting == "strapped":
+        sensor_from_segment = from_strap_rule(place, hold, reference)
+        source, sigma = "strap rule", STRAP_SIGMA
+    if sensor_from_segment is None:
+        return LimbAlignment((1.0, 0.0, 0.0, 0.0), math.nan, "unknown", math.pi, hold.spread)
+    return _limb(hold, pose, place, sensor_from_segment, source, sigma)
+
+
+def heading_in(hold: Hold, pose: str, place: Place, sensor_from_segment: NDArray[np.float64]) -> float:
+    """Return the heading (rad) that a hold of a reference pose gives a sensor whose mounting is known."""
+    reference = reference_pose(pose)[SEGMENT_OF[place]]
+    before_heading = rotation.multiply(hold.attitude, sensor_from_segment)
+    return float(rotation.twist_about(rotation.multiply(reference, rotation.inverse(before_heading)), 2))
+
+
+def _limb(
+    hold: Hold,
+    pose: str,
+    place: Place,
+    sensor_from_segment: NDArray[np.float64],
+    source: HeadingSource,
+    sigma: float,
+) -> LimbAlignment:
+    """Let the hold fix the heading, and the rest of the mounting, so that the held pose comes out exactly."""
+    reference = reference_pose(pose)[SEGMENT_OF[place]]
+    heading = heading_in(hold, pose, place, sensor_from_segment)
+    headed = rotation.multiply(rotation.about(2, heading), hold.attitude)
+    exact = rotation.multiply(rotation.inverse(headed), reference)
+    w, x, y, z = (float(c) for c in exact)
+    return LimbAlignment((w, x, y, z), heading, source, sigma, hold.spread)
+
+
+def from_bow(
+    up_first: NDArray[np.float64], up_bow: NDArray[np.float64], up_in_segment: NDArray[np.float64], lifted: bool
+) -> tuple[NDArray[np.float64] | None, float]:
+    """Return sensor_from_segment (4,) and its heading's sigma (rad) from the upward directions in two holds.
+
+    The axis that carries gravity from the first hold to the bow is the segment's right axis. None when the
+    segment tilted less than 20 degrees, or when its right axis is vertical in the first hold (arms in T-pose).
+    """
+    axis = np.cross(up_first, up_bow)
+    sine = float(np.linalg.norm(axis))
+    tilt = math.atan2(sine, float(up_first @ up_bow))
+    if tilt < SMALLEST_BOW or abs(float(up_in_segment[2])) > 0.5:
+        return None, math.pi
+    # Turning the segment by +θ about its right axis turns "up", seen from it, by -θ.
+    right = axis / sine * (-1.0 if lifted else 1.0)
+    sigma = math.hypot(TILT_SIGMA / math.sin(tilt), BOW_AXIS_SIGMA)
+    return _from_pairs((up_first, right), (up_in_segment, np.array([0.0, 0.0, 1.0]))), sigma
+
+
+def from_two_poses(
+    up_first: NDArray[np.float64],
+    up_other: NDArray[np.float64],
+    first_in_segment: NDArray[np.float64],
+    other_in_segment: NDArray[np.float64],
+) -> tuple[NDArray[np.float64] | None, float]:
+    """Return sensor_from_segment (4,) and sigma from "up" in two fully known poses; None when both look alike."""
+    sine = float(np.linalg.norm(np.cross(first_in_segment, other_in_segment)))
+    if sine < math.sin(SMALLEST_BOW):
+        return None, math.pi
+    sigma = math.hypot(TILT_SIGMA / sine, 2 * BOW_AXIS_SIGMA)
+    return _from_pairs((up_first, up_other), (first_in_segment, other_in_segment)), sigma
+
+
+def from_strap_rule(place: Place, hold: Hold, reference: NDArray[np.float64]) -> NDArray[np.float64] | None:
+    """Return sensor_from_segment (4,) as the strap rule says, None when gravity contradicts it."""
+    rule = strap_rule()[place]
+    expected = rotation.rotate(rule, rotation.rotate(rotation.inverse(reference), UP))
+    if float(expected @ hold.up()) < math.cos(STRAP_CONTRADICTION):
+        return None
+    return rule
+
+
+def _from_pairs(
+    in_sensor: tuple[NDArray[np.float64], NDArray[np.float64]],
+    in_segment: tuple[NDArray[np.float64], NDArray[np.float64]],
+) -> NDArray[np.float64]:
+    """Return the rotation (4,) that fits the first pair of directions exactly and the second as nearly as it can."""
+
+    def basis(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:
+        x = first / np.linalg.norm(first)
+        z = np.cross(x, second)
+        z = z / np.linalg.norm(z)
+        return np.stack([x, np.cross(z, x), z], axis=1)
+
+    return rotation.from_matrix(basis(*in_sensor) @ basis(*in_segment).T)

@@ -1,0 +1,199 @@
+"""From a take to a motion, and from live samples to poses: one chain, two ways to run it.
+
+offset and gain → attitude → alignment → 23 segments → hips. ``solve(take, method="live")`` is ``Solver.push``
+in a loop over the samples in their order of arrival; ``offline`` may look ahead and resamples every sensor
+to one regular grid.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from studio.core import rotation
+from studio.core.alignment import align, heading_in, hold_all, require_headings
+from studio.core.body import Place, Skeleton
+from studio.core.errors import AlignmentError, PoseMissing
+from studio.core.full_body import FullBody
+from studio.core.live_solver import Solver, samples_of
+from studio.core.pose import Method, Motion
+from studio.core.root import Root
+from studio.core.sample import SensorId
+from studio.core.take import Alignment, Calibration, Mark, Take
+from studio.core.track import SensorTrack, attitude_at, tracks_of
+
+CHUNK = 4096  # poses at a time: the working set stays in the cache
+ASSUMED_POSE = 1.0  # s at the start of a take without any marked pose
+
+
+@dataclass(frozen=True)
+class SolveOptions:
+    """What a person may choose when a take is solved again."""
+
+    attitude: str = "vqf"
+    method: Method = "offline"
+    poses: tuple[Mark, ...] = ()
+    """Held poses that replace those marked in the take; empty keeps the marked ones."""
+    calibrations: Mapping[SensorId, Calibration] | None = None
+    """None: those recorded in the take."""
+
+
+@dataclass(frozen=True)
+class Solution:
+    """A motion and what it was made from."""
+
+    motion: Motion
+    tracks: Mapping[SensorId, SensorTrack] = field(repr=False)
+
+
+def solve(take: Take, options: SolveOptions | None = None) -> Solution:
+    """Return the motion of a take.
+
+    Raises
+    ------
+    AlignmentError
+        No pose is known, limbs moved in it, or no limb's heading is known.
+    """
+    chosen = options or SolveOptions()
+    if chosen.method == "live":
+        return _solve_live(take, chosen)
+    tracks = solve_tracks(take, chosen)
+    alignment, notes = find_alignment(take, tracks, chosen)
+    worn = {p: tracks[s] for p, s in take.setup.assignment.sensors.items() if s in tracks and p in alignment.limbs}
+    frame_s = min(track.info.frame_s for track in worn.values())
+    time = np.arange(np.floor(take.duration() / frame_s + 1e-6) + 1) * frame_s
+    headings = {place: _headings(track, place, alignment, _poses(take, chosen), take) for place, track in worn.items()}
+    known = [place for place in take.setup.assignment.places() if place in worn and headings[place]]
+    body = FullBody(known, alignment.pose)
+    skeleton = Skeleton.from_stature(take.setup.stature)
+    root = Root(skeleton)
+    world = np.empty((len(time), 23, 4))
+    hips = np.empty((len(time), 3))
+    for start in range(0, len(time), CHUNK):
+        part = slice(start, start + CHUNK)
+        segments = [_segment(worn[place], alignment, place, headings[place], time[part]) for place in known]
+        world[part] = body.complete(np.stack(segments, axis=-2))
+        hips[part] = root.run(world[part], np.full(len(time[part]), frame_s))
+    masks = {place: _coverage(worn[place], headings.get(place, {}), time) for place in worn}
+    motion = Motion(
+        time=time,
+        frame_s=frame_s,
+        world_from_segment=world,
+        hips=hips,
+        skeleton=skeleton,
+        measured={place: measured for place, (measured, _) in masks.items()},
+        lost={place: lost for place, (_, lost) in masks.items()},
+        alignment=alignment,
+        method="offline",
+        attitude=chosen.attitude,
+        notes=(*notes, *_notes(take, tracks, chosen)),
+    )
+    return Solution(motion, tracks)
+
+
+def solve_tracks(take: Take, options: SolveOptions) -> dict[SensorId, SensorTrack]:
+    """Return the attitude of every sensor, without any body."""
+    return tracks_of(take, options.attitude, _calibrations(take, options))
+
+
+def find_alignment(
+    take: Take, tracks: Mapping[SensorId, SensorTrack], options: SolveOptions
+) -> tuple[Alignment, tuple[str, ...]]:
+    """Return the alignment of a take and notes on what had to be assumed."""
+    poses = _poses(take, options)
+    notes: tuple[str, ...] = ()
+    assumed = not any(mark.label in ("n", "t") for mark in poses)
+    if assumed:
+        poses = (Mark(0.0, "pose", "n", min(ASSUMED_POSE, take.duration())), *poses)
+        notes = ("No pose was marked: the first second is taken for N-pose, and all angles are relative to it.",)
+    setup = take.setup
+    try:
+        alignment = align(tracks, setup.assignment, poses, setup.mounting, take.duration())
+    except AlignmentError:
+        if assumed:
+            raise PoseMissing(take.duration()) from None
+        raise
+    require_headings(alignment)
+    return alignment, notes
+
+
+def _calibrations(take: Take, options: SolveOptions) -> Mapping[SensorId, Calibration]:
+    if options.calibrations is not None:
+        return options.calibrations
+    return {calibration.sensor: calibration for calibration in take.setup.calibrations}
+
+
+def _poses(take: Take, options: SolveOptions) -> tuple[Mark, ...]:
+    return options.poses or take.poses()
+
+
+def _headings(
+    track: SensorTrack, place: Place, alignment: Alignment, poses: tuple[Mark, ...], take: Take
+) -> dict[int, float]:
+    """Return the heading (rad) of each heading group of a track that some hold fixes; empty when unknown."""
+    limb = alignment.limbs[place]
+    if limb.source == "unknown":
+        return {}
+    reference = Mark(alignment.from_s, "pose", alignment.pose, alignment.to_s)
+    headings: dict[int, float] = {}
+    for mark in (reference, *(m for m in poses if m.label in ("n", "t"))):
+        hold = hold_all({place: track}, mark, take.duration(), required=False).get(place)
+        if hold is not None and hold.group not in headings:
+            first = mark is reference
+            headings[hold.group] = (
+                limb.heading if first else heading_in(hold, mark.label, place, np.array(limb.sensor_from_segment))
+            )
+    return headings
+
+
+def _segment(
+    track: SensorTrack, alignment: Alignment, place: Place, headings: Mapping[int, float], time: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return world_from_segment (n, 4) of one place."""
+    sensor_from_segment = np.array(alignment.limbs[place].sensor_from_segment)
+    nearest = _nearest(track, time)
+    # Where a restarted sensor has no heading yet, the last known one stands in; ``measured`` is False there.
+    fallback = alignment.limbs[place].heading
+    heading = np.array([headings.get(int(group), fallback) for group in track.group[nearest]])
+    headed = rotation.multiply(rotation.about(2, heading), attitude_at(track, time))
+    return rotation.multiply(headed, sensor_from_segment)
+
+
+def _nearest(track: SensorTrack, time: NDArray[np.float64]) -> NDArray[np.intp]:
+    after = np.clip(np.searchsorted(track.time, time), 1, max(len(track.time) - 1, 1))
+    closer = time - track.time[after - 1] < track.time[np.minimum(after, len(track.time) - 1)] - time
+    return np.asarray(np.where(closer, after - 1, np.minimum(after, len(track.time) - 1)))
+
+
+def _coverage(
+    track: SensorTrack, headings: Mapping[int, float], time: NDArray[np.float64]
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Return (measured, lost) on the grid."""
+    nearest = _nearest(track, time)
+    near = np.abs(track.time[nearest] - time) <= track.info.frame_s
+    known = np.isin(track.group[nearest], list(headings))
+    return near & known, track.lost[nearest] | ~near
+
+
+def _notes(take: Take, tracks: Mapping[SensorId, SensorTrack], options: SolveOptions) -> tuple[str, ...]:
+    notes = []
+    if not take.setup.stature_known:
+        notes.append(f"Nobody entered a stature: {take.setup.stature:.2f} m is assumed for all lengths.")
+    other = sorted({t.estimator for t in tracks.values() if t.estimator != options.attitude})
+    if other:
+        notes.append(f"Some sensors cannot serve the attitude filter {options.attitude}; they use {', '.join(other)}.")
+    return tuple(notes)
+
+
+def _solve_live(take: Take, options: SolveOptions) -> Solution:
+    """Replay the samples through ``Solver`` in their order of arrival; the alignment found on the way holds for all."""
+    solver = Solver(take.setup, options.attitude, _calibrations(take, options))
+    for stream in take.streams:
+        solver.add_sensor(stream.info)
+    history = [frame for sample in samples_of(take) for frame in solver.push(sample)]
+    tracks = solver.tracks()
+    alignment, notes = find_alignment(take, tracks, options)
+    solver.use(alignment)
+    motion = solver.motion(history, (*notes, *_notes(take, tracks, options)))
+    return Solution(motion, tracks)

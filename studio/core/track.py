@@ -1,0 +1,190 @@
+"""The attitude of one sensor through a take, each stretch of known heading apart."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from studio.core import rest, rotation
+from studio.core.attitude import open_estimator
+from studio.core.runs import Run, has_turning, runs_of, uses_wire_quaternions
+from studio.core.sample import NO_CORRECTION, Correction, Flag, SensorId, SensorInfo, Stream
+from studio.core.take import Calibration, Take
+
+RAW_OFFSET_SIGMA = math.radians(20.0) / math.sqrt(3.0)  # rad/s; MPU-6050 data sheet: ±20 °/s, uniform
+STORED_OFFSET_SIGMA = math.radians(0.05)  # rad/s; a stored offset after some minutes of warming up
+DEVICE_OFFSET_SIGMA = math.radians(1.0)  # rad/s; a device with a filter of its own tracks its offset
+CARRY_AFTER = 1.0  # s into a new run at which its heading is compared: its tilt has settled by then
+
+
+@dataclass(frozen=True)
+class SensorTrack:
+    """Attitude on the sensor's own frames."""
+
+    info: SensorInfo
+    estimator: str
+    """Name in ``attitude.ESTIMATORS``; a source without gyroscope is always ``device``."""
+    time: NDArray[np.float64]
+    """(n,), s of take time."""
+    attitude: NDArray[np.float64]
+    """(n, 4), world_from_sensor, z up; the heading of each ``group`` is its own."""
+    device: NDArray[np.float64]
+    """(n, 4), what the device said, NaN when nothing."""
+    speed: NDArray[np.float64]
+    """(n,), rad/s, how fast the sensor turned."""
+    lost: NDArray[np.bool_]
+    """(n,), frames that never arrived and are bridged."""
+    run: NDArray[np.int32]
+    """(n,), counts uninterrupted runs."""
+    group: NDArray[np.int32]
+    """(n,), counts stretches within which the heading is one."""
+    offset: NDArray[np.float64]
+    """(3,), rad/s, subtracted after the sensor's own correction."""
+    offset_sigma: float
+    """rad/s, standard uncertainty of the offset, largest axis."""
+
+    def rows(self, from_s: float, to_s: float) -> NDArray[np.intp]:
+        """Return the frames between two times."""
+        return np.flatnonzero((self.time >= from_s) & (self.time <= to_s))
+
+
+def attitude_at(track: SensorTrack, time: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the attitude (n, 4) at any times (n,) s; before, after and between runs the nearest frame holds."""
+    if len(track.time) == 1:
+        return np.repeat(track.attitude, len(time), axis=0)
+    after = np.clip(np.searchsorted(track.time, time), 1, len(track.time) - 1)
+    before = after - 1
+    span = track.time[after] - track.time[before]
+    fraction = np.clip((time - track.time[before]) / np.where(span > 0, span, 1.0), 0.0, 1.0)
+    fraction = np.where(track.run[before] == track.run[after], fraction, np.round(fraction))
+    return rotation.slerp(track.attitude[before], track.attitude[after], fraction)
+
+
+def tracks_of(take: Take, attitude: str, calibrations: Mapping[SensorId, Calibration]) -> dict[SensorId, SensorTrack]:
+    """Return every sensor's track, looking ahead where that helps (method ``offline``).
+
+    Parameters
+    ----------
+    attitude : str
+        Key of ``attitude.ESTIMATORS``; sources that cannot serve it use what they can, and say so.
+    calibrations : mapping
+        Offset and gain to be in force, for the sensors that have one.
+    """
+    return {
+        stream.info.sensor: _track(stream, attitude, calibrations.get(stream.info.sensor)) for stream in take.streams
+    }
+
+
+def estimator_for(info: SensorInfo, wanted: str) -> str:
+    """Return the estimator that serves a sensor when ``wanted`` was asked for."""
+    if not has_turning(info):
+        return "device"
+    if wanted == "device":
+        return "gyro" if uses_wire_quaternions(info) else wanted
+    if wanted == "vqf" and not info.has_acceleration:
+        return "gyro" if uses_wire_quaternions(info) else "device"
+    return wanted
+
+
+def prior_offset_sigma(info: SensorInfo, flags: int, calibration: Calibration | None) -> float:
+    """Return how well the offset is known before this take is looked at, rad/s."""
+    if calibration is not None and math.isfinite(max(calibration.offset_sigma)):
+        return max(calibration.offset_sigma)
+    if calibration is not None or (info.correction not in (None, NO_CORRECTION)) or flags & Flag.CALIBRATED:
+        return STORED_OFFSET_SIGMA
+    if info.orientation == "world":
+        return DEVICE_OFFSET_SIGMA
+    return RAW_OFFSET_SIGMA
+
+
+def wanted_correction(calibration: Calibration | None) -> Correction | None:
+    """Return the correction a calibration asks for, None to leave the tag's own in force."""
+    return None if calibration is None else calibration.correction
+
+
+def _track(stream: Stream, wanted: str, calibration: Calibration | None) -> SensorTrack:
+    info = stream.info
+    runs = runs_of(stream, wanted_correction(calibration))
+    flags = int(np.bitwise_or.reduce(stream.flags)) if len(stream) else 0
+    prior = prior_offset_sigma(info, flags, calibration)
+    # An estimator asked to repeat the device must not be improved upon.
+    offset, sigma = (np.zeros(3), prior) if wanted == "device" else measure_offset(runs, info.frame_s, prior)
+    name = estimator_for(info, wanted)
+    attitudes = []
+    for run in runs:
+        run.increments[1:] -= offset * info.frame_s
+        attitudes.append(open_estimator(name, info.frame_s, sigma).run(run))
+    return _joined(info, name, runs, attitudes, offset, sigma)
+
+
+def measure_offset(runs: list[Run], frame_s: float, prior: float) -> tuple[NDArray[np.float64], float]:
+    """Return the offset (3,) rad/s left in the runs and its sigma: from a table if they lay on one, else standing."""
+    best: rest.Rest | None = None
+    for spread in (rest.RATE_SPREAD_TABLE, rest.RATE_SPREAD_WORN):
+        for run in runs:
+            found = rest.find_rest(run.increments[1:] / frame_s, run.acceleration[1:], frame_s, spread)
+            if found is not None and (best is None or found.sigma.max() < best.sigma.max()):
+                best = found
+    if best is None:
+        return np.zeros(3), prior
+    offset, sigma = rest.combine(best.offset, np.maximum(best.sigma, rest.RESOLUTION), prior)
+    return offset, float(sigma.max())
+
+
+def _joined(
+    info: SensorInfo,
+    name: str,
+    runs: list[Run],
+    attitudes: list[NDArray[np.float64]],
+    offset: NDArray[np.float64],
+    sigma: float,
+) -> SensorTrack:
+    groups: list[int] = []
+    for index, run in enumerate(runs):
+        if index == 0:
+            groups.append(0)
+            continue
+        turn = carried_heading(info, runs[index - 1], attitudes[index - 1], run, attitudes[index])
+        if math.isfinite(turn):
+            attitudes[index] = rotation.multiply(rotation.about(2, turn), attitudes[index])
+        groups.append(groups[-1] if math.isfinite(turn) else groups[-1] + 1)
+
+    def join(parts: list[NDArray[np.float64]], width: int) -> NDArray[np.float64]:
+        return np.concatenate(parts) if parts else np.empty((0, width))
+
+    lengths = [len(run.time) for run in runs]
+    return SensorTrack(
+        info=info,
+        estimator=name,
+        time=join([run.time for run in runs], 0).reshape(-1),
+        attitude=join(attitudes, 4),
+        device=join([run.orientation for run in runs], 4),
+        speed=np.linalg.norm(join([run.increments for run in runs], 3), axis=1) / info.frame_s,
+        lost=join([run.lost.astype(np.float64) for run in runs], 0).reshape(-1) > 0,
+        run=np.repeat(np.arange(len(runs), dtype=np.int32), lengths),
+        group=np.repeat(np.array(groups, dtype=np.int32), lengths),
+        offset=offset,
+        offset_sigma=sigma,
+    )
+
+
+def carried_heading(
+    info: SensorInfo,
+    before: Run,
+    before_attitude: NDArray[np.float64],
+    after: Run,
+    after_attitude: NDArray[np.float64],
+) -> float:
+    """Return the turn about world z that continues the heading across a break, NaN when nothing tells.
+
+    A tag that went on integrating, or a device with a heading of its own, tells by its quaternion.
+    """
+    if before.epoch != after.epoch and not info.common_world:
+        return math.nan
+    settled = min(round(CARRY_AFTER / info.frame_s), len(after.time) - 1)
+    expected = rotation.multiply(
+        before_attitude[-1], rotation.multiply(rotation.inverse(before.orientation[-1]), after.orientation[settled])
+    )
+    return float(rotation.twist_about(rotation.multiply(expected, rotation.inverse(after_attitude[settled])), 2))
