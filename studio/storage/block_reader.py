@@ -1,0 +1,254 @@
+"""Reads the blocks of a take file one by one, whatever was done to the file; holds one block at a time."""
+
+import struct
+import zlib
+from collections.abc import Iterator
+from io import BytesIO
+from pathlib import Path
+from struct import unpack_from
+from typing import BinaryIO, NamedTuple
+
+from mcap.data_stream import ReadDataStream
+from mcap.exceptions import McapError
+from mcap.opcode import Opcode
+from mcap.records import Attachment, Channel, Header, Metadata
+
+from studio.core.errors import NotATake, TakeUnsafe, WrittenByNewerStudio
+from studio.storage.blocks import CHUNK_HEAD, head_is_whole, parse_head
+from studio.storage.facts import NOT_JSON, Identity, from_json
+from studio.storage.profile import (
+    BLOCK_HEAD,
+    BLOCK_HEAD_SIZE,
+    FAMILY,
+    MAGIC,
+    MAX_BLOCK,
+    MAX_CHANNELS,
+    MAX_CHUNK,
+    MESSAGE,
+    MESSAGE_HEAD_SIZE,
+    PROFILE,
+    RECORD_HEAD_SIZE,
+    SYNC,
+)
+
+WINDOW = 1 << 20  # bytes read at a time while looking for the next block
+MAX_GARBAGE = 1 << 30  # bytes that are no take in one file; looking through them takes half a second
+MAX_RECORDS = 4096  # in one block; MAX_CHANNELS with one index each, their schemas and a few chunks
+_RECORD = "<BQ"
+_NO_RECORD = (McapError, struct.error, UnicodeDecodeError, ValueError, OverflowError)
+"""What reading a record raises whose lengths contradict each other."""
+
+
+class Record(NamedTuple):
+    """One record of a block."""
+
+    opcode: int
+    content: bytes
+    trusted: bool
+    """The CRC of the whole block was right."""
+
+
+class Messages(NamedTuple):
+    """The messages of one chunk, undamaged; all are of one size."""
+
+    channel: int
+    """of the first message"""
+    data: bytes
+
+
+class BlockReader:
+    """Walks through a take file; after a walk it knows the channels, the identity and the damage."""
+
+    def __init__(self, stream: BinaryIO, path: Path) -> None:
+        self.channels: dict[int, Channel] = {}
+        self.identity: Identity | None = None
+        self.chunks = 0
+        self.damaged = 0
+        """Chunks and blocks that could not be used."""
+        self.finished = False
+        """The file has its end."""
+        self._stream = stream
+        self._path = path
+        self._size = stream.seek(0, 2)
+        self._take: bytes | None = None
+        self._number = 0
+        self._garbage = 0
+        self._header = self._read_header()
+
+    def messages(self) -> Iterator[Messages]:
+        """Yield every undamaged chunk, in order."""
+        for record in self._records():
+            if record.opcode == Opcode.CHUNK:
+                messages = self._chunk(record)
+                if messages is None:
+                    self.damaged += 1
+                else:
+                    self.chunks += 1
+                    yield messages
+
+    def attachments(self) -> Iterator[Attachment]:
+        """Yield every undamaged part of an attachment, in order."""
+        for record in self._records():
+            if record.opcode == Opcode.ATTACHMENT and record.trusted:
+                yield Attachment.read(_stream(record.content))
+
+    def _records(self) -> Iterator[Record]:
+        """Yield the records of all blocks; learn channels and identity on the way."""
+        position = self._first_block()
+        while position is not None:
+            head = self._read(position, BLOCK_HEAD_SIZE)
+            if not self._is_ours(head):
+                if self._is_end(position):
+                    self.finished = True
+                    return
+                position = self._next_sync(position + 1)
+                continue
+            fields = parse_head(head)
+            self._count_missing(int(fields["number"]))
+            body_at = position + BLOCK_HEAD_SIZE
+            body = self._read(body_at, int(fields["body_length"]))
+            whole = len(body) == fields["body_length"] and zlib.crc32(body) == fields["body_crc"]
+            for count, record in enumerate(_split(body, whole)):
+                if count > MAX_RECORDS:
+                    raise TakeUnsafe(str(self._path), f"a block has more than {MAX_RECORDS} records")
+                self._learn(record)
+                yield record
+            if whole or head_is_whole(self._read(body_at + len(body), BLOCK_HEAD_SIZE)):
+                position = body_at + len(body)
+            else:
+                self._waste(len(body))
+                position = self._next_sync(body_at)
+        if not self._take:
+            self._refuse()
+
+    def _chunk(self, record: Record) -> Messages | None:
+        """Return the messages of a chunk whose CRC is right, None when it is damaged."""
+        content = record.content
+        if len(content) < CHUNK_HEAD.size - RECORD_HEAD_SIZE + MESSAGE_HEAD_SIZE:
+            return None
+        _, _, size, crc, compression, data_size = unpack_from("<QQQIIQ", content)
+        data = content[CHUNK_HEAD.size - RECORD_HEAD_SIZE :]
+        if compression:
+            if record.trusted:
+                raise TakeUnsafe(str(self._path), "a chunk is compressed, which no take is")
+            return None
+        if size != len(data) or data_size != len(data) or zlib.crc32(data) != crc:
+            return None
+        if size > MAX_CHUNK:
+            raise TakeUnsafe(str(self._path), f"a chunk has {size} bytes, more than {MAX_CHUNK}")
+        opcode, length, channel = unpack_from("<BQH", data)
+        stride = RECORD_HEAD_SIZE + length
+        if opcode != MESSAGE or stride < MESSAGE_HEAD_SIZE or len(data) % stride:
+            return None
+        return Messages(channel, data)
+
+    def _learn(self, record: Record) -> None:
+        if not record.trusted or record.opcode not in (Opcode.CHANNEL, Opcode.METADATA):
+            return
+        try:
+            if record.opcode == Opcode.CHANNEL:
+                channel = Channel.read(_stream(record.content))
+                self.channels.setdefault(channel.id, channel)
+            elif self.identity is None:
+                self._learn_identity(Metadata.read(_stream(record.content)).metadata)
+        except (*_NO_RECORD, *NOT_JSON):
+            self.damaged += 1
+        if len(self.channels) > MAX_CHANNELS:
+            raise TakeUnsafe(str(self._path), f"more than {MAX_CHANNELS} channels")
+
+    def _learn_identity(self, facts: dict[str, str]) -> None:
+        profile = facts.get("profile", PROFILE)
+        if profile != PROFILE:
+            raise WrittenByNewerStudio(str(self._path), profile[:64], PROFILE)
+        if "take" in facts:
+            self.identity = from_json(facts["take"], Identity)
+
+    def _count_missing(self, number: int) -> None:
+        self.damaged += number - self._number - 1
+        self._number = number
+
+    def _is_ours(self, head: bytes) -> bool:
+        if not head_is_whole(head):
+            return False
+        fields = parse_head(head)
+        if fields["body_length"] > MAX_BLOCK:
+            raise TakeUnsafe(str(self._path), f"a block has {fields['body_length']} bytes, more than {MAX_BLOCK}")
+        take = fields["take"].tobytes()
+        if self._take is None:
+            self._take = take
+        # Pages of another take, or of this one a second time, are what a power cut may leave.
+        return bool(take == self._take and fields["number"] > self._number)
+
+    def _is_end(self, position: int) -> bool:
+        opcode_and_length = self._read(position, RECORD_HEAD_SIZE)
+        if len(opcode_and_length) < RECORD_HEAD_SIZE or unpack_from(_RECORD, opcode_and_length) != (Opcode.DATA_END, 4):
+            return False
+        return self._read(self._size - len(MAGIC), len(MAGIC)) == MAGIC
+
+    def _first_block(self) -> int | None:
+        self._number = self._garbage = self.chunks = self.damaged = 0
+        self._take, self.finished = None, False
+        after_header = len(MAGIC) + RECORD_HEAD_SIZE + len(self._header)
+        if head_is_whole(self._read(after_header, BLOCK_HEAD_SIZE)):
+            return after_header
+        return self._next_sync(0)
+
+    def _next_sync(self, position: int) -> int | None:
+        """Return where the next block head may start, None when there is none."""
+        position += RECORD_HEAD_SIZE
+        while position < self._size:
+            window = self._read(position, WINDOW)
+            found = window.find(SYNC)
+            if found >= 0:
+                self._waste(found)
+                return position + found - RECORD_HEAD_SIZE
+            # A mark may lie across the border of two windows.
+            position += max(len(window) - len(SYNC) + 1, 1)
+            self._waste(len(window))
+        return None
+
+    def _waste(self, size: int) -> None:
+        self._garbage += size
+        if self._garbage > MAX_GARBAGE:
+            raise TakeUnsafe(str(self._path), f"more than {MAX_GARBAGE >> 20} MiB of it are no take")
+
+    def _read_header(self) -> bytes:
+        lead = self._read(0, len(MAGIC) + RECORD_HEAD_SIZE)
+        if len(lead) < len(MAGIC) + RECORD_HEAD_SIZE or not lead.startswith(MAGIC):
+            return b""
+        opcode, length = unpack_from(_RECORD, lead, len(MAGIC))
+        if opcode != Opcode.HEADER or length > WINDOW:
+            return b""
+        return self._read(len(lead), length)
+
+    def _refuse(self) -> None:
+        """Say why there is no block in this file."""
+        try:
+            profile = Header.read(_stream(self._header)).profile
+        except _NO_RECORD:
+            profile = ""
+        if profile.startswith(FAMILY) and profile != PROFILE:
+            raise WrittenByNewerStudio(str(self._path), profile[:64], PROFILE)
+        raise NotATake(str(self._path))
+
+    def _read(self, position: int, length: int) -> bytes:
+        self._stream.seek(position)
+        return self._stream.read(length)
+
+
+def _split(body: bytes, trusted: bool) -> Iterator[Record]:
+    """Yield the records of a block as far as their lengths make sense."""
+    position = 0
+    while position + RECORD_HEAD_SIZE <= len(body):
+        opcode, length = unpack_from(_RECORD, body, position)
+        start = position + RECORD_HEAD_SIZE
+        if opcode == BLOCK_HEAD or length > len(body) - start:
+            # The chunk that should stand here is lost.
+            yield Record(Opcode.CHUNK, b"", False)
+            return
+        yield Record(opcode, body[start : start + length], trusted)
+        position = start + length
+
+
+def _stream(content: bytes) -> ReadDataStream:
+    return ReadDataStream(BytesIO(content))
