@@ -22,8 +22,11 @@ NO_NETWORK = (
 )
 REASONS = (
     (r"No space left on device|\[Errno 28\]", "The disk is full: free about 500 MB, then start again."),
+    (
+        r"CERTIFICATE_VERIFY_FAILED|SSLError",  # before the network: pip names its retries here too
+        "The network lets no safe connection through: ask whoever runs it for its certificate, then start again.",
+    ),
     (NO_NETWORK, "The packages could not be fetched: connect this computer to the network, then start again."),
-    (r"CERTIFICATE_VERIFY_FAILED|SSLError", "The network refuses a safe connection: ask whoever runs it."),
     (r"Permission denied|\[Errno 13\]", "The environment cannot be written: check who owns its folder."),
 )
 UNKNOWN_REASON = "The packages could not be installed; the lines above say why."

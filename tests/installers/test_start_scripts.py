@@ -267,6 +267,7 @@ def test_a_failing_pip_is_shown_and_explained(
     [
         ("OSError: [Errno 28] No space left on device", "The disk is full"),
         ("socket.gaierror: [Errno -2] Name or service not known", "The packages could not be fetched"),
+        ("Max retries exceeded (Caused by SSLError(CERTIFICATE_VERIFY_FAILED))", "The network lets no safe connection"),
         ("ERROR: Could not build wheels for vqf", "The packages could not be installed; the lines above"),
     ],
 )
