@@ -78,7 +78,7 @@ def unwrap_continuous(angles: ArrayLike, sequence: str) -> Array:
     Parameters
     ----------
     angles : (n, ..., 3), rad
-        Rows in order of time. Rows with NaN stay NaN; the next finite row goes on from the last.
+        Rows in order of time, all finite.
     sequence
         The axes the angles are about.
 
@@ -96,22 +96,8 @@ def unwrap_continuous(angles: ArrayLike, sequence: str) -> Array:
     """
     u = np.asarray(angles, np.float64)
     first, _, third = _axes(sequence)
-    proper = first == third
-    if np.isfinite(u).all():
-        return _nearest_set(u, proper)
-    out = np.full(u.shape, np.nan)
-    for column in np.ndindex(u.shape[1:-1]):
-        rows = (slice(None), *column)
-        finite = np.isfinite(u[rows]).all(axis=-1)
-        out[(finite, *column)] = _nearest_set(u[rows][finite], proper)
-    return out
-
-
-def _nearest_set(u: Array, proper: bool) -> Array:
-    if not len(u):
-        return u
     other = u + np.pi
-    other[..., 1] = -u[..., 1] if proper else np.pi - u[..., 1]
+    other[..., 1] = -u[..., 1] if first == third else np.pi - u[..., 1]
     # Staying costs the same in both sets, and so does changing over: whether a row changes does not
     # depend on the set of the row before, so a running count replaces a loop over time.
     stay = (wrap(u[1:] - u[:-1]) ** 2).sum(axis=-1)

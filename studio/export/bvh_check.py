@@ -14,7 +14,7 @@ from studio.core import body, rotation
 from studio.core.errors import ReadBackDiffers
 from studio.core.pose import Motion
 from studio.export.bvh import BVH_FROM_WORLD, Preset
-from studio.export.resampling import BLOCK, blocks_of_poses, timing_of
+from studio.export.resampling import blocks_of_poses, timing_of
 
 Array = NDArray[np.float64]
 
@@ -55,10 +55,17 @@ class BvhFile(Protocol):
         """(frames, channels), rotations in degrees."""
         ...
 
+    @property
+    def notes(self) -> Sequence[str]:
+        """What was unusual about the file, e.g. a count of frames that differs from the rows."""
+        ...
+
 
 def compare_with_motion(written: BvhFile, path: str, motion: Motion, preset: Preset, fps: int | None) -> None:
     """Raise ReadBackDiffers unless every joint of every frame stands where the motion has it, within 1e-3 cm."""
     timing = timing_of(motion, fps)
+    if written.notes:
+        raise ReadBackDiffers(path, "; ".join(written.notes))
     if tuple(written.names) != tuple(segment.name for segment in body.Segment):
         raise ReadBackDiffers(path, f"{len(written.names)} joints, not those of the skeleton")
     if tuple(written.parents) != body.PARENTS:
@@ -77,7 +84,7 @@ def compare_with_motion(written: BvhFile, path: str, motion: Motion, preset: Pre
             raise ReadBackDiffers(path, f"joints of frame {poses.first + worst} are {apart[worst] * 100:.4f} cm apart")
 
 
-def joint_positions(written: BvhFile, rows: slice = slice(0, BLOCK)) -> Array:
+def joint_positions(written: BvhFile, rows: slice) -> Array:
     """Return where the file puts its joints, (frames, joints, 3), in its own unit and axes."""
     values = written.values[rows]
     positions = np.empty((len(values), len(written.names), 3))

@@ -1,0 +1,122 @@
+"""What a file of numbers cannot say of itself, as JSON beside it."""
+
+import json
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import studio
+from studio.core.body import PLACES
+from studio.core.pose import Motion
+from studio.core.sample import Stream
+from studio.core.take import Alignment, Calibration, LimbAlignment, Take
+
+
+def sidecar(take: Take, motion: Motion | None, of_the_file: Mapping[str, Any]) -> bytes:
+    """Return the JSON text (UTF-8) that stands beside an exported file.
+
+    Parameters
+    ----------
+    motion : Motion or None
+        None when the file holds what the sensors said and nothing was solved.
+    of_the_file
+        What only its exporter knows: units, columns, rate.
+    """
+    assignment = take.setup.assignment
+    content: dict[str, Any] = {
+        "made_by": {"program": "Kinetag Studio", "version": studio.__version__},
+        "take": {
+            "name": take.name,
+            "person": take.person,
+            "source": take.source,
+            "started": take.started,
+            "duration_s": take.duration(),
+            "versions": dict(take.versions),
+        },
+        "body": {"stature_m": take.setup.stature, "stature_known": take.setup.stature_known},
+        "sensors": [_sensor(take, stream) for stream in take.streams],
+        "places_without_sensor": [place.value for place in PLACES if place not in assignment.sensors],
+        **of_the_file,
+    }
+    if motion is not None:
+        content["solved"] = {
+            "method": motion.method,
+            "attitude": motion.attitude,
+            "alignment": _alignment(motion.alignment, take),
+            "interpolated_share": {place.value: _share(motion, lost) for place, lost in motion.lost.items()},
+            "notes": list(motion.notes),
+        }
+    return (json.dumps(_finite(content), ensure_ascii=False, allow_nan=False, indent=2) + "\n").encode()
+
+
+def _sensor(take: Take, stream: Stream) -> dict[str, Any]:
+    place = take.setup.assignment.place_of(stream.info.sensor)
+    gaps = missing_before(stream)
+    calibrations = [known for known in take.setup.calibrations if known.sensor == stream.info.sensor]
+    return {
+        "sensor": stream.info.sensor,
+        "label": stream.info.label,
+        "place": place.value if place else None,
+        "frame_s": stream.info.frame_s,
+        "samples": len(stream),
+        "lost": int(gaps.sum()),
+        "longest_gap_s": float(gaps.max(initial=0)) * stream.info.frame_s,
+        "calibration": _calibration(calibrations[0]) if calibrations else None,
+    }
+
+
+def missing_before(stream: Stream) -> NDArray[np.int64]:
+    """Return how many frames were lost just before each sample, (n,); 0 where a sensor started anew."""
+    order = np.lexsort((stream.frame, stream.epoch))  # samples may arrive out of order
+    steps = np.diff(stream.frame[order]) - 1
+    steps[np.diff(stream.epoch[order]) != 0] = 0
+    missing = np.zeros(len(stream), np.int64)
+    missing[order[1:]] = np.maximum(steps, 0)
+    return missing
+
+
+def _calibration(calibration: Calibration) -> dict[str, Any]:
+    return {
+        "date": calibration.date,
+        "method": calibration.method,
+        "offset_deg_s": [math.degrees(value) for value in calibration.correction.offset],
+        "offset_sigma_deg_s": [math.degrees(value) for value in calibration.offset_sigma],
+        "gain_sigma": calibration.gain_sigma,
+        "temperature_c": calibration.temperature,
+    }
+
+
+def _alignment(alignment: Alignment, take: Take) -> dict[str, Any]:
+    return {
+        "pose": alignment.pose,
+        "from_s": alignment.from_s,
+        "to_s": alignment.to_s,
+        "age_at_end_of_take_s": take.duration() - alignment.to_s,
+        "limbs": {place.value: _limb(limb) for place, limb in alignment.limbs.items()},
+    }
+
+
+def _limb(limb: LimbAlignment) -> dict[str, Any]:
+    return {
+        "heading_source": limb.source,
+        "heading_sigma_deg": math.degrees(limb.heading_sigma),
+        "spread_deg": math.degrees(limb.spread),
+    }
+
+
+def _share(motion: Motion, lost: NDArray[np.bool_]) -> float:
+    return round(float(lost.mean()), 6) if len(motion) else 0.0
+
+
+def _finite(value: Any) -> Any:
+    """Return the same content with null for numbers that are unknown: JSON has no NaN."""
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, dict):
+        return {key: _finite(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(item) for item in value]
+    return value
