@@ -190,7 +190,7 @@ def test_the_start_loads_nothing_heavy():
 
 
 def test_each_folder_of_tests_mirrors_a_folder():
-    beside = {"claims", "conformance", "data", "firmware", "journeys", "peers"}
+    beside = {"benchmarks", "claims", "conformance", "data", "firmware", "journeys", "peers"}
     ours = {path.name for path in (ROOT / "tests").iterdir() if path.is_dir() and path.name != "__pycache__"}
     theirs = {path.name for parent in (ROOT, ROOT / "studio") for path in parent.iterdir() if path.is_dir()}
 
