@@ -4,6 +4,7 @@ import struct
 import zlib
 from collections.abc import Iterator
 from io import BytesIO
+from itertools import islice
 from pathlib import Path
 from struct import unpack_from
 from typing import BinaryIO, NamedTuple
@@ -70,30 +71,31 @@ class BlockReader:
         self._stream = stream
         self._path = path
         self._size = stream.seek(0, 2)
-        self._take: bytes | None = None
+        self.take = b""
+        """The identity of the file, 8 bytes."""
         self._number = 0
         self._garbage = 0
         self._header = self._read_header()
 
     def messages(self) -> Iterator[Messages]:
         """Yield every undamaged chunk, in order."""
-        for record in self._records():
-            if record.opcode == Opcode.CHUNK:
-                messages = self._chunk(record)
-                if messages is None:
-                    self.damaged += 1
-                else:
-                    self.chunks += 1
-                    yield messages
+        for records in self.blocks():
+            for record in records:
+                if record.opcode == Opcode.CHUNK:
+                    messages = self.chunk(record)
+                    if messages is not None:
+                        yield messages
 
     def attachments(self) -> Iterator[Attachment]:
         """Yield every undamaged part of an attachment, in order."""
-        for record in self._records():
-            if record.opcode == Opcode.ATTACHMENT and record.trusted:
-                yield Attachment.read(_stream(record.content))
+        for records in self.blocks():
+            for record in records:
+                attachment = read_attachment_record(record)
+                if attachment is not None:
+                    yield attachment
 
-    def _records(self) -> Iterator[Record]:
-        """Yield the records of all blocks; learn channels and identity on the way."""
+    def blocks(self) -> Iterator[list[Record]]:
+        """Yield the records of each block; learn channels and identity on the way."""
         position = self._first_block()
         while position is not None:
             head = self._read(position, BLOCK_HEAD_SIZE)
@@ -108,21 +110,30 @@ class BlockReader:
             body_at = position + BLOCK_HEAD_SIZE
             body = self._read(body_at, int(fields["body_length"]))
             whole = len(body) == fields["body_length"] and zlib.crc32(body) == fields["body_crc"]
-            for count, record in enumerate(_split(body, whole)):
-                if count > MAX_RECORDS:
-                    raise TakeUnsafe(str(self._path), f"a block has more than {MAX_RECORDS} records")
+            records = list(islice(_split(body, whole), MAX_RECORDS + 1))
+            if len(records) > MAX_RECORDS:
+                raise TakeUnsafe(str(self._path), f"a block has more than {MAX_RECORDS} records")
+            for record in records:
                 self._learn(record)
-                yield record
+            yield records
             if whole or head_is_whole(self._read(body_at + len(body), BLOCK_HEAD_SIZE)):
                 position = body_at + len(body)
             else:
                 self._waste(len(body))
                 position = self._next_sync(body_at)
-        if not self._take:
+        if not self.take:
             self._refuse()
 
-    def _chunk(self, record: Record) -> Messages | None:
-        """Return the messages of a chunk whose CRC is right, None when it is damaged."""
+    def chunk(self, record: Record) -> Messages | None:
+        """Return the messages of a chunk whose CRC is right, None when it is damaged; count which."""
+        messages = self._undamaged(record)
+        if messages is None:
+            self.damaged += 1
+        else:
+            self.chunks += 1
+        return messages
+
+    def _undamaged(self, record: Record) -> Messages | None:
         content = record.content
         if len(content) < CHUNK_HEAD.size - RECORD_HEAD_SIZE + MESSAGE_HEAD_SIZE:
             return None
@@ -174,10 +185,9 @@ class BlockReader:
         if fields["body_length"] > MAX_BLOCK:
             raise TakeUnsafe(str(self._path), f"a block has {fields['body_length']} bytes, more than {MAX_BLOCK}")
         take = fields["take"].tobytes()
-        if self._take is None:
-            self._take = take
+        self.take = self.take or take
         # Pages of another take, or of this one a second time, are what a power cut may leave.
-        return bool(take == self._take and fields["number"] > self._number)
+        return bool(take == self.take and fields["number"] > self._number)
 
     def _is_end(self, position: int) -> bool:
         opcode_and_length = self._read(position, RECORD_HEAD_SIZE)
@@ -187,7 +197,7 @@ class BlockReader:
 
     def _first_block(self) -> int | None:
         self._number = self._garbage = self.chunks = self.damaged = 0
-        self._take, self.finished = None, False
+        self.take, self.finished = b"", False
         after_header = len(MAGIC) + RECORD_HEAD_SIZE + len(self._header)
         if head_is_whole(self._read(after_header, BLOCK_HEAD_SIZE)):
             return after_header
@@ -234,6 +244,17 @@ class BlockReader:
     def _read(self, position: int, length: int) -> bytes:
         self._stream.seek(position)
         return self._stream.read(length)
+
+
+def read_attachment_record(record: Record) -> Attachment | None:
+    """Return one part of an attachment, None when the record is something else or damaged."""
+    if record.opcode != Opcode.ATTACHMENT or not record.trusted:
+        return None
+    try:
+        attachment: Attachment = Attachment.read(_stream(record.content))
+    except _NO_RECORD:
+        return None
+    return attachment
 
 
 def _split(body: bytes, trusted: bool) -> Iterator[Record]:

@@ -17,6 +17,7 @@ from studio.storage.profile import (
     BLOCK_HEAD,
     BLOCK_HEAD_SIZE,
     MESSAGE,
+    MESSAGE_HEAD,
     MESSAGE_HEAD_SIZE,
     RECORD_HEAD_SIZE,
     SYNC,
@@ -25,7 +26,7 @@ from studio.storage.profile import (
 # MCAP "Chunk": opcode, length, start, end, size, CRC, length of the compression's name (0), size again
 CHUNK_HEAD = struct.Struct("<BQQQQIIQ")
 CHUNK_HEAD_SIZE = CHUNK_HEAD.size
-MESSAGE_HEAD = struct.Struct("<BQHIQQ")
+_MESSAGE_HEAD = struct.Struct("<BQHIQQ")
 _INDEX_HEAD = struct.Struct("<BQHI")
 _HEAD = struct.Struct("<BQ16s8sIII")
 _CRC = struct.Struct("<I")
@@ -103,11 +104,15 @@ class BlockBuilder:
         """Append one chunk of equally long ``bodies`` of one channel."""
         length = MESSAGE_HEAD_SIZE - RECORD_HEAD_SIZE + len(bodies[0])
         data = b"".join(
-            MESSAGE_HEAD.pack(MESSAGE, length, channel, sequence + i, time, time) + body
+            _MESSAGE_HEAD.pack(MESSAGE, length, channel, sequence + i, time, time) + body
             for i, (time, body) in enumerate(zip(log_times, bodies, strict=True))
         )
-        channels = np.full(len(bodies), channel, np.uint16)
-        self._add_chunk(data, channels, np.array(log_times, np.uint64), MESSAGE_HEAD_SIZE + len(bodies[0]))
+        self.add_chunk(data)
+
+    def add_chunk(self, data: bytes) -> None:
+        """Append one chunk of equally long messages, given as bytes."""
+        rows = message_heads(data)
+        self._add_chunk(data, rows["channel"], rows["log_time"], rows.itemsize)
 
     def finish(self) -> Block:
         """Return the block with its head."""
@@ -148,6 +153,13 @@ class BlockBuilder:
             self.add(_message_index(int(channels[first]), entries[first:last]))
             counts.append((int(channels[first]), last - first))
         self.chunks.append(ChunkFacts(offset, len(head) + len(data), len(data), start, end, tuple(counts), data))
+
+
+def message_heads(data: bytes) -> NDArray[np.void]:
+    """Return the equally long messages of a chunk as rows with the fields of MCAP's message head."""
+    length = int.from_bytes(data[1:RECORD_HEAD_SIZE], "little")
+    body = RECORD_HEAD_SIZE + length - MESSAGE_HEAD_SIZE
+    return np.frombuffer(data, np.dtype([*MESSAGE_HEAD, ("body", f"V{body}")]))
 
 
 def encode(*records: McapRecord) -> bytes:

@@ -81,7 +81,7 @@ class TakeEncoder:
         builder = self._builder()
         self._add_identity(builder)
         self._channel(EVENT_TOPIC, 3, {})
-        self._add_channels(builder, (*_schemas(), *self.channels.values()))
+        self._add_channels(builder, (*schema_records(), *self.channels.values()))
         self._new.clear()
         block = builder.finish()
         shifted = tuple(facts._replace(offset=facts.offset + len(lead)) for facts in block.metadata)
@@ -134,7 +134,7 @@ class TakeEncoder:
         """Return the identity and all channels once more, for a file whose start is damaged."""
         builder = self._builder()
         self._add_identity(builder)
-        self._add_channels(builder, (*_schemas(), *self.channels.values()))
+        self._add_channels(builder, (*schema_records(), *self.channels.values()))
         return builder.finish()
 
     def channel_of(self, info: SensorInfo) -> int:
@@ -174,7 +174,7 @@ class TakeEncoder:
         self._note_latest(rows, raw, events)
         if self._new or self.latest - self._repeated >= REPEAT:
             again = self.latest - self._repeated >= REPEAT
-            self._add_channels(builder, (*_schemas(), *self.channels.values()) if again else self._new)
+            self._add_channels(builder, (*schema_records(), *self.channels.values()) if again else self._new)
             self._repeated = self.latest if again else self._repeated
             self._new.clear()
         for link, (received, data) in raw.items():
@@ -206,7 +206,7 @@ class TakeEncoder:
         self._sequence[channel] = first + len(bodies)
 
     def _add_identity(self, builder: BlockBuilder) -> None:
-        record = encode(Metadata("kinetag", {"profile": PROFILE, "take": to_json(self.identity).decode()}))
+        record = encode(identity_record(self.identity))
         builder.metadata.append(RecordFacts(builder.add(record), len(record), "kinetag"))
 
     def _add_channels(self, builder: BlockBuilder, records: Iterable[Schema | Channel]) -> None:
@@ -249,7 +249,13 @@ def _event_body(event: Event) -> bytes:
     return event_json(Event(event.kind[:TEXT_LIMIT], event.received, {"too_long": len(body)}))
 
 
-def _schemas() -> tuple[Schema, ...]:
+def identity_record(identity: Identity) -> Metadata:
+    """Return what a take file says about itself."""
+    return Metadata("kinetag", {"profile": PROFILE, "take": to_json(identity).decode()})
+
+
+def schema_records() -> tuple[Schema, ...]:
+    """Return the schemas of every take."""
     return tuple(Schema(id=id_, name=name, encoding=kind, data=text.encode()) for id_, name, kind, text in SCHEMAS)
 
 

@@ -17,7 +17,7 @@ from studio.storage.verification import verify
 
 BALLAST = 8 << 20  # bytes held back, so that a full disk still takes the last block, the end and take.json
 RESERVE = 64 << 20  # bytes free below which nothing is recorded: the system itself needs room
-_NO_ROOM = {errno.ENOSPC, errno.EFBIG, getattr(errno, "EDQUOT", errno.ENOSPC)}
+NO_ROOM = {errno.ENOSPC, errno.EFBIG, getattr(errno, "EDQUOT", errno.ENOSPC)}
 
 
 class Saved(NamedTuple):
@@ -91,7 +91,7 @@ class TakeFile:
         """Return how much of the recording is on disk, s."""
         return 0.0 if self.ledger.until is None else self.ledger.until - self._encoder.zero
 
-    def finish(self, document: TakeDocument) -> Saved:
+    def finish(self) -> Saved:
         """End the file, give it its name, read it back.
 
         Raises
@@ -109,7 +109,7 @@ class TakeFile:
                 self._filesystem.close(self._descriptor)
             raise failure from error
         with contextlib.suppress(OSError):  # read_take makes a lost take.json again
-            save_document(self.folder, document, self._filesystem)
+            save_document(self.folder, TakeDocument(name=self._encoder.identity.name), self._filesystem)
         channels = self._encoder.channels
         imu = {channel.id for topic, channel in channels.items() if topic.startswith(IMU_TOPIC)}
         latest = verify(self.folder / TAKE_FILE, self.ledger, imu)
@@ -164,6 +164,6 @@ class TakeFile:
         filesystem.sync_folder(self.folder)
 
     def _failed(self, error: OSError) -> RecordingError:
-        if error.errno in _NO_ROOM:
+        if error.errno in NO_ROOM:
             return DiskFull(str(self.folder), self.kept())
         return FolderNotWritable(str(self.folder))

@@ -15,6 +15,7 @@ from studio.core.errors import Damaged, NotATake, TakeUnsafe
 from studio.core.sample import SensorId, SensorInfo, Stream
 from studio.core.take import Mark, Take
 from studio.storage.block_reader import BlockReader, Messages
+from studio.storage.documents import State
 from studio.storage.facts import (
     NOT_JSON,
     Anchor,
@@ -39,7 +40,7 @@ from studio.storage.profile import (
     SAMPLE_LENGTH,
     TAKE_FILE,
 )
-from studio.storage.take_json import State, load_document
+from studio.storage.take_json import load_document
 
 MAX_EVENTS = 1_000_000  # a marker every 40 ms for 12 h
 _RAW = Struct("<qI")
@@ -53,7 +54,7 @@ class ReadReport:
     finished: bool
     """The file has its end: recording was stopped and not cut off."""
     recovered: bool
-    """The recording was cut off; what is there is what was safe by then."""
+    """The recording was cut off, and perhaps given its end later; what is there is what was safe by then."""
     chunks: int
     damaged: int
     """Chunks, blocks and messages that could not be used."""
@@ -90,10 +91,10 @@ def read_take(path: Path) -> tuple[Take, ReadReport]:
     infos = content.infos | {info.sensor: info for info in content.told if info.sensor in content.infos}
     streams = tuple(_stream(infos[sensor], rows, zero) for sensor, rows in content.rows.items())
     take = _take(reader, streams, content.marks(zero), zero)
-    document, state = load_document(file.parent)
+    document, state = load_document(file.parent, take.name)
     report = ReadReport(
         finished=reader.finished,
-        recovered=not reader.finished,
+        recovered=not reader.finished or any(event.kind == "recovered" for event in content.events),
         chunks=reader.chunks,
         damaged=reader.damaged + content.unusable,
         samples=sum(map(len, streams)),

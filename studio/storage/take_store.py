@@ -14,7 +14,6 @@ from studio.storage.filesystem import FILES, FileSystem
 from studio.storage.profile import CDR_LITTLE_ENDIAN, MESSAGE, SAMPLE_DTYPE, SAMPLE_LENGTH
 from studio.storage.session_folder import open_session
 from studio.storage.take_file import TakeFile
-from studio.storage.take_json import TakeDocument
 
 _FIELDS = (
     "device_time", "time", "received", "orientation", "rate", "acceleration", "frame", "battery", "temperature", "rssi",
@@ -49,7 +48,7 @@ def write_take(
     for name, media_type, data in attachments:
         for block in encoder.attachment(name, media_type, data):
             file.append(block)
-    saved = file.finish(TakeDocument())
+    saved = file.finish()
     if file.failure is not None:
         raise file.failure
     return saved.folder

@@ -13,7 +13,6 @@ from studio.storage.encoder import RawBytes, TakeEncoder
 from studio.storage.facts import Anchor, Event, identity, mark_event
 from studio.storage.filesystem import FILES, FileSystem
 from studio.storage.take_file import RESERVE, Saved, TakeFile
-from studio.storage.take_json import TakeDocument
 
 BLOCK_S = 0.05  # s between writes; half of what the profile allows, so that a busy computer still keeps to it
 SYNC_EVERY = 20  # blocks, 1 s
@@ -200,7 +199,7 @@ class TakeWriter:
         for name, media_type, data in self._attachments:
             for block in self._encoder.attachment(name, media_type, data):
                 self._file.append(block)
-        return self._file.finish(TakeDocument())
+        return self._file.finish()
 
     def _look_for_room(self) -> None:
         """Compare the room on the disk with this take's own rate: other programs fill disks, too, but not steadily."""

@@ -9,8 +9,8 @@ import numpy as np
 
 from studio.core.errors import VerificationFailed
 from studio.storage.block_reader import BlockReader
+from studio.storage.blocks import message_heads
 from studio.storage.ledger import Ledger
-from studio.storage.profile import MESSAGE_HEAD, MESSAGE_HEAD_SIZE, RECORD_HEAD_SIZE
 from studio.storage.take_reader import sample_rows
 
 
@@ -37,7 +37,8 @@ def verify(file: Path, written: Ledger, imu: Set[int]) -> float:
         reader = BlockReader(stream, file)
         for messages in reader.messages():
             content.update(messages.data)
-            counts.update(_channels(messages.data))
+            channels, numbers = np.unique(message_heads(messages.data)["channel"], return_counts=True)
+            counts.update(dict(zip(channels.tolist(), numbers.tolist(), strict=True)))
             if messages.channel in imu:
                 rows = sample_rows(messages)
                 latest = latest if rows is None else np.fmax(latest, np.fmax.reduce(rows["time"]))
@@ -46,11 +47,3 @@ def verify(file: Path, written: Ledger, imu: Set[int]) -> float:
         expected = sum(written.counts[channel] for channel in imu)
         raise VerificationFailed(str(file), expected, sum(counts[channel] for channel in imu))
     return float(latest)
-
-
-def _channels(data: bytes) -> dict[int, int]:
-    length = int.from_bytes(data[1:RECORD_HEAD_SIZE], "little")
-    rest = RECORD_HEAD_SIZE + length - MESSAGE_HEAD_SIZE
-    rows = np.frombuffer(data, np.dtype([*MESSAGE_HEAD, ("body", f"V{rest}")]))
-    values, numbers = np.unique(rows["channel"], return_counts=True)
-    return dict(zip(values.tolist(), numbers.tolist(), strict=True))

@@ -1,0 +1,143 @@
+"""A take that was cut off gets its end. The original goes only when the finished one was read back."""
+
+import contextlib
+from collections.abc import Iterator
+from pathlib import Path
+
+from mcap.opcode import Opcode
+from mcap.records import Header
+
+from studio import __version__
+from studio.core.errors import DiskFull, FolderNotWritable, NotATake
+from studio.storage.block_reader import BlockReader, Record, read_attachment_record
+from studio.storage.blocks import Block, BlockBuilder, RecordFacts, encode
+from studio.storage.encoder import identity_record, schema_records
+from studio.storage.facts import Event, event_json
+from studio.storage.filesystem import FILES, FileSystem, lock
+from studio.storage.ledger import Ledger
+from studio.storage.profile import (
+    BALLAST_FILE,
+    EVENT_TOPIC,
+    IMU_TOPIC,
+    MAGIC,
+    PART_FILE,
+    PROFILE,
+    TAKE_FILE,
+)
+from studio.storage.take_file import NO_ROOM
+from studio.storage.verification import verify
+
+UNFINISHED = "take.recovering.mcap"
+ORIGINAL = "take.damaged.mcap"
+"""What the cut-off file is called afterwards when more than its end was damaged: others may get more out of it."""
+
+
+def recover(folder: Path, filesystem: FileSystem = FILES) -> Path:
+    """Finish a take whose recording was cut off, and return its folder.
+
+    Raises
+    ------
+    NotATake, WrittenByNewerStudio, TakeUnsafe
+        The file cannot be read.
+    DiskFull, FolderNotWritable, VerificationFailed
+        The finished file cannot be written, or another studio is at it; the original is as it was.
+    """
+    part = folder / PART_FILE
+    if (folder / TAKE_FILE).is_file():
+        return folder
+    if not part.is_file():
+        raise NotATake(str(folder))
+    try:
+        with part.open("r+b") as stream:
+            if not lock(stream.fileno(), wait=False):
+                raise FolderNotWritable(str(folder))
+            damaged = _finish(BlockReader(stream, part), folder, filesystem)
+        if damaged:
+            filesystem.replace(part, folder / ORIGINAL)
+        else:
+            filesystem.remove(part)
+        filesystem.remove(folder / BALLAST_FILE)
+        filesystem.sync_folder(folder)
+    except OSError as error:
+        with contextlib.suppress(OSError):
+            filesystem.remove(folder / UNFINISHED)
+        if error.errno in NO_ROOM:
+            raise DiskFull(str(folder), 0.0) from error
+        raise FolderNotWritable(str(folder)) from error
+    return folder
+
+
+def _finish(reader: BlockReader, folder: Path, filesystem: FileSystem) -> int:
+    """Write and verify the finished take; return how much damage there was."""
+    for _ in reader.messages():
+        pass  # now all channels are known, whichever of their records was damaged
+    target = folder / UNFINISHED
+    filesystem.remove(folder / BALLAST_FILE)
+    filesystem.remove(target)
+    descriptor = filesystem.create(target)
+    ledger = Ledger()
+    try:
+        for block in _rebuilt(reader):
+            filesystem.write(descriptor, block.data)
+            ledger.add(block)
+        channels = {channel.topic: channel for channel in reader.channels.values()}
+        filesystem.write(descriptor, ledger.closing(channels, indexed=True))
+        filesystem.sync_whole(descriptor)
+    finally:
+        filesystem.close(descriptor)
+    imu = {channel.id for topic, channel in channels.items() if topic.startswith(IMU_TOPIC)}
+    verify(target, ledger, imu)
+    filesystem.replace(target, folder / TAKE_FILE)
+    return reader.damaged
+
+
+def _rebuilt(reader: BlockReader) -> Iterator[Block]:
+    """Yield the same messages and attachments in blocks without damage."""
+    yield _opening(reader)
+    number = 1
+    latest = 0
+    for records in reader.blocks():
+        builder = BlockBuilder(reader.take, number + 1)
+        for record in records:
+            _copy(record, reader, builder)
+        if builder.parts:
+            number += 1
+            latest = max([latest, *(chunk.end for chunk in builder.chunks)])
+            yield builder.finish()
+    event = next((channel.id for channel in reader.channels.values() if channel.topic == EVENT_TOPIC), None)
+    if event is not None:
+        builder = BlockBuilder(reader.take, number + 1)
+        note = Event("recovered", latest * 1e-9, {"damaged": reader.damaged, "studio": __version__})
+        builder.add_messages(event, 0, [latest], [event_json(note)])
+        yield builder.finish()
+
+
+def _opening(reader: BlockReader) -> Block:
+    lead = MAGIC + encode(Header(PROFILE, f"kinetag-studio {__version__}"))
+    builder = BlockBuilder(reader.take, 1)
+    if reader.identity is not None:
+        record = encode(identity_record(reader.identity))
+        builder.metadata.append(RecordFacts(len(lead) + builder.add(record), len(record), "kinetag"))
+    builder.add(encode(*schema_records(), *reader.channels.values()))
+    block = builder.finish()
+    return Block(lead + block.data, metadata=block.metadata)
+
+
+def _copy(record: Record, reader: BlockReader, builder: BlockBuilder) -> None:
+    if record.opcode == Opcode.CHUNK:
+        messages = reader.chunk(record)
+        if messages is not None:
+            builder.add_chunk(messages.data)
+    attachment = read_attachment_record(record)
+    if attachment is not None:
+        data = encode(attachment)
+        builder.attachments.append(
+            RecordFacts(
+                builder.add(data),
+                len(data),
+                attachment.name,
+                attachment.media_type,
+                attachment.log_time,
+                len(attachment.data),
+            )
+        )
