@@ -21,8 +21,9 @@ def write_file(path: Path, blocks: Iterable[bytes], read_back: ReadBack) -> None
     ReadBackDiffers
         What was written is not what was meant; nothing has changed.
     """
-    # In the same folder, because a rename is atomic only within one file system.
-    part = path.with_name(f".{path.name}.{os.getpid()}.part")
+    # In the same folder, because a rename is atomic only within one file system. Always the same name, so
+    # that what a killed export left is overwritten by the next.
+    part = path.with_name(f".{path.name}.part")
     try:
         _write(part, blocks, path)
         try:

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 Bytes = NDArray[np.uint8]
 
 GROUP = 10_000  # integer digits are looked up four at a time: 20,000 entries of 8 bytes stay in the cache
-LARGEST = GROUP * GROUP  # above it the last decimals of a double begin to fail; such cells go through Python
+LARGEST = GROUP * GROUP  # two groups of integer digits; larger numbers go through Python, column by column
+WHOLE = 2.0**53  # above it not every integer is a double, so that the scaled number would lose its last digits
 
 
 @dataclass(frozen=True)
@@ -82,7 +83,7 @@ def _numbers(column: Numbers, punctuation: Punctuation) -> Bytes:
     missing = np.isnan(column.values)
     values = np.where(missing, 0.0, column.values) if missing.any() else column.values
     scaled = np.rint(np.abs(values) * 10.0**column.decimals)
-    if scaled.size and scaled.max() >= LARGEST * 10.0**column.decimals:
+    if scaled.size and scaled.max() >= min(LARGEST * 10.0**column.decimals, WHOLE):
         return _by_python(column, punctuation)
     cells = _digits(scaled.astype(np.int64), values < 0, column.decimals, punctuation)
     if missing.any():
