@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 
 from studio.core.errors import RecordingUnreadable
 from studio.importers.bvh import joint_positions, read_bvh
@@ -95,7 +96,9 @@ def test_joint_positions_agree_with_rotation_matrices_of_another_library(name):
 
     bvh = read_bvh(DATA / name)
     frame = len(bvh.values) // 2
-    row, place, turn, start = bvh.values[frame], {}, {}, 0
+    row, start = bvh.values[frame], 0
+    place: dict[int, NDArray[np.float64]] = {}
+    turn: dict[int, NDArray[np.float64]] = {}
     for joint, channels in enumerate(bvh.channels):
         told = dict(zip(channels, row[start : start + len(channels)], strict=True))
         start += len(channels)
