@@ -3,7 +3,7 @@ rem Called by studio.bat and test.bat: find Python, make the environment, instal
 rem   environment.bat run|dev     leaves KINETAG_PYTHON behind
 rem Everything said goes to stderr: stdout belongs to the verbs.
 set "KINETAG_SUITABLE=import sys; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 13))"
-if not defined KINETAG_VENV set "KINETAG_VENV=%~dp0..\.venv"
+for %%D in ("%~dp0..") do if not defined KINETAG_VENV set "KINETAG_VENV=%%~fD\.venv"
 set "KINETAG_PYTHON=%KINETAG_VENV%\Scripts\python.exe"
 if exist "%KINETAG_PYTHON%" "%KINETAG_PYTHON%" -c "%KINETAG_SUITABLE%" >nul 2>&1 && goto install
 
