@@ -238,7 +238,7 @@ def _align_limb(
         sensor_from_segment = from_strap_rule(place, hold, reference)
         source, sigma = "strap rule", STRAP_SIGMA
     if sensor_from_segment is None:
-        return LimbAlignment((1.0, 0.0, 0.0, 0.0), math.nan, "unknown", math.pi, hold.spread)
+        return LimbAlignment((1.0, 0.0, 0.0, 0.0), 0.0, "unknown", math.pi, hold.spread)
     return _limb(hold, pose, place, sensor_from_segment, source, sigma)
 
 

@@ -78,7 +78,7 @@ class LimbAlignment:
 
     sensor_from_segment: Quaternion
     heading: float
-    """rad, turns the sensor's own filter world into the wearer's world about z."""
+    """rad, turns the sensor's own filter world into the wearer's world about z; 0 when ``source`` is unknown."""
     source: HeadingSource
     heading_sigma: float
     """rad, one standard deviation; what the source is worth."""

@@ -1,0 +1,1 @@
+"""The running studio without a window: links, solver and take-writer at work together."""

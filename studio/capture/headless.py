@@ -1,0 +1,66 @@
+"""Recording without a window: connect, wait for the sensors, keep a while, close."""
+
+import asyncio
+from dataclasses import dataclass
+from pathlib import Path
+
+from studio.capture.live_session import LiveSession
+from studio.capture.setups import setup_for
+from studio.capture.sources import open_source
+from studio.core.errors import FolderNotWritable, NoData, WrittenByNewerStudio
+from studio.storage.person_file import Person, load_person, save_person
+from studio.storage.take_file import Saved
+
+
+@dataclass(frozen=True)
+class RecordRequest:
+    """What a person asked to be recorded."""
+
+    source: str
+    seconds: float
+    """s after the first kept sample; infinity records until it is stopped."""
+    library: Path
+    person: str
+    name: str
+
+
+async def record(request: RecordRequest, session: LiveSession, stop: asyncio.Event) -> Saved:
+    """Record one take and return when it has been read back. ``stop`` ends it early; what was kept is kept.
+
+    Raises
+    ------
+    LinkError, RecordingError, SetupError, TakeFileError
+    """
+    person = load_person(request.library, request.person)
+    opened = await open_source(request.source)
+    await session.connect(request.source, opened.link)
+    stopper: asyncio.Task[bool] | None = None
+    try:
+        await session.sensors_known()
+        session.adopt(setup_for(session.infos, opened.setup, person))
+        recording = await session.start_recording(
+            request.library, request.person, request.name, request.source, request.seconds
+        )
+        stopper = asyncio.create_task(stop.wait())
+        finished = asyncio.create_task(session.finished(recording))
+        await asyncio.wait({stopper, finished}, return_when=asyncio.FIRST_COMPLETED)
+        finished.cancel()
+        saved = await session.stop_recording()
+    finally:
+        if stopper is not None:
+            stopper.cancel()
+        await session.disconnect()
+    if saved.samples == 0:
+        raise NoData(request.source, 0)
+    if opened.setup is None:
+        _remember(request, session, person)
+    return saved
+
+
+def _remember(request: RecordRequest, session: LiveSession, person: Person) -> None:
+    """Keep the assignment for the next time; the take itself is safe already."""
+    worn = Person(stature=person.stature, assignment=session.setup.assignment, mounting=session.setup.mounting)
+    try:
+        save_person(request.library, request.person, worn)
+    except (FolderNotWritable, WrittenByNewerStudio):
+        return

@@ -1,0 +1,47 @@
+"""From what one link delivers to samples: dialect and tracker, and the commands that tags need."""
+
+from collections.abc import Iterator, Mapping
+
+from studio.acquisition.dialects.registry import open_dialect
+from studio.acquisition.driver import Arrival, Known, Link
+from studio.acquisition.health import SensorHealth
+from studio.acquisition.tracker import LinkTracker
+from studio.core.sample import Sample, SensorId, SensorInfo
+
+Note = tuple[str, Mapping[str, object]]
+
+
+class LinkIntake:
+    """One link being read."""
+
+    def __init__(self, link: Link) -> None:
+        self.link = link
+        self.infos: dict[SensorId, SensorInfo] = {}
+        self._dialect = open_dialect(link.dialect) if link.dialect else None
+        self._tracker = LinkTracker(link.name, self._dialect.traits) if self._dialect else None
+
+    def samples(self, piece: Arrival | Known) -> Iterator[Sample]:
+        """Yield the samples that a piece completes; ``infos`` is up to date for each."""
+        if isinstance(piece, Known):
+            self.infos[piece.info.sensor] = piece.info
+            yield piece.sample
+            return
+        if self._dialect is None or self._tracker is None:
+            raise ValueError(f"link {self.link.name} sends bytes but names no dialect")
+        for reading in self._dialect.feed(piece.data):
+            sample = self._tracker.accept(reading, piece.received)
+            if sample is not None:
+                self.infos[sample.sensor] = self._tracker.infos[sample.sensor]
+                yield sample
+
+    def notes(self) -> list[Note]:
+        """Return what happened since the last call: reboots, gaps, two tags with one number…"""
+        return [] if self._tracker is None else list(self._tracker.take_events())
+
+    def health(self) -> Mapping[SensorId, SensorHealth]:
+        """Return the counts of each sensor."""
+        return {} if self._tracker is None else self._tracker.health
+
+    def malformed(self) -> int:
+        """Return how many pieces made no sense."""
+        return 0 if self._dialect is None else sum(self._dialect.malformed.values())

@@ -1,0 +1,45 @@
+"""Who wears which sensor: from the source, from the last time, or from the numbers on the tags."""
+
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import replace
+
+from studio.core.body import DEFAULT_STATURE, PLACES
+from studio.core.sample import SensorId, SensorInfo
+from studio.core.take import Assignment, Setup
+from studio.storage.person_file import Person
+
+
+def assigned_by_number(infos: Mapping[SensorId, SensorInfo]) -> Assignment:
+    """Return tag number k on row k of paper 003's Table 1; numbers that two tags claim stay unassigned."""
+    claimed = Counter(info.number for info in infos.values())
+    return Assignment(
+        {
+            PLACES[info.number - 1]: sensor
+            for sensor, info in infos.items()
+            if 1 <= info.number <= len(PLACES) and claimed[info.number] == 1
+        }
+    )
+
+
+def setup_for(infos: Mapping[SensorId, SensorInfo], offered: Setup | None, person: Person) -> Setup:
+    """Return the setup of a recording that is about to start.
+
+    Parameters
+    ----------
+    offered : Setup or None
+        What the source itself knows; it wins.
+    person : Person
+        Stature, and what was worn last: used for the sensors that are there again.
+    """
+    if offered is not None:
+        present = {place: sensor for place, sensor in offered.assignment.sensors.items() if sensor in infos}
+        return replace(offered, assignment=Assignment(present))
+    worn = {place: sensor for place, sensor in person.assignment.sensors.items() if sensor in infos}
+    return Setup(
+        Assignment(worn) if worn else assigned_by_number(infos),
+        stature=DEFAULT_STATURE if person.stature is None else person.stature,
+        stature_known=person.stature is not None,
+        # Tags come with an arrow and pictures of the places; foreign recordings do not pass here.
+        mounting="strapped",
+    )

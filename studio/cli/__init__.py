@@ -1,0 +1,34 @@
+"""The headless verbs: ``studio record``, ``studio export`` …
+
+Exit codes: 0 done, 1 the operator can act (one sentence on stderr), 2 usage.
+"""
+
+import sys
+from collections.abc import Sequence
+
+from studio.cli.arguments import parser
+from studio.core.errors import StudioError
+from studio.ui.wording import one_line
+
+DONE, REFUSED = 0, 1
+
+NO_WINDOW_YET = (
+    "The window of Kinetag Studio is not part of this version yet. "
+    "Everything works from the command line: studio --help lists the verbs."
+)
+
+
+def main(argv: Sequence[str]) -> int:
+    """Run one verb and return the exit code."""
+    arguments = parser().parse_args(argv)
+    if arguments.verb is None:
+        print(NO_WINDOW_YET)
+        return DONE
+    try:
+        arguments.run(arguments)
+    except StudioError as refusal:
+        print(one_line(refusal), file=sys.stderr)
+        return REFUSED
+    except BrokenPipeError:  # the reader of our output, `head` for one, has seen enough
+        return REFUSED
+    return DONE

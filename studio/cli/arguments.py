@@ -1,0 +1,157 @@
+"""The words of the command line."""
+
+import argparse
+import math
+import re
+from pathlib import Path
+
+import studio
+from studio.cli import verbs
+from studio.core.attitude import ESTIMATORS
+from studio.core.take import Mark, PoseName
+from studio.export.bvh import DEFAULT_RATE, RATES
+from studio.export.bvh import PRESETS as BVH_PRESETS
+from studio.export.csv_tables import PRESETS as CSV_PRESETS
+from studio.importers.registry import IMPORTERS
+
+POSES: tuple[PoseName, ...] = ("n", "t", "bow", "sit")
+_POSE = re.compile(r"(?P<name>[a-z]+)=(?P<first>[0-9.]+)\.\.(?P<last>[0-9.]+)")
+
+SOURCES = """\
+A SOURCE is one of
+  synthetic[:SCRIPT][?tags=15&loss=0.05&seed=1&calibrated=1&speed=max]   a simulated performer
+  serial:PORT[@BAUD]                                                     a receiver on a cable
+  replay:TAKE[?speed=2]                                                  a take, played again
+"""
+
+
+def parser() -> argparse.ArgumentParser:
+    """Return the parser of the whole command line."""
+    top = argparse.ArgumentParser(prog="studio", description="Kinetag Studio: motion capture with body-worn sensors.")
+    top.add_argument("--version", action="version", version=f"Kinetag Studio {studio.__version__}")
+    add = top.add_subparsers(dest="verb", metavar="VERB", title="verbs")
+    _devices(add)
+    _record(add)
+    _import(add)
+    _inspect(add)
+    _solve(add)
+    _export(add)
+    return top
+
+
+_Verbs = "argparse._SubParsersAction[argparse.ArgumentParser]"
+
+
+def _devices(add: _Verbs) -> None:
+    verb = add.add_parser("devices", help="list the sources that can be opened now")
+    verb.add_argument("--json", action="store_true", help="for programs")
+    verb.set_defaults(run=verbs.devices)
+
+
+def _record(add: _Verbs) -> None:
+    verb = add.add_parser(
+        "record",
+        help="record a take and print its folder",
+        epilog=SOURCES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    verb.add_argument("--source", required=True, metavar="SOURCE")
+    verb.add_argument("--seconds", type=_seconds, default=math.inf, help="how long (default: until Ctrl+C)")
+    verb.add_argument("--library", type=Path, required=True, metavar="DIR")
+    verb.add_argument("--person", default="", metavar="CODE", help="a code such as P014, never a name")
+    verb.add_argument("--name", default="take", help="what the take is called")
+    verb.set_defaults(run=verbs.record)
+
+
+def _import(add: _Verbs) -> None:
+    verb = add.add_parser("import", help="turn a foreign recording into a take and print its folder")
+    verb.add_argument("paths", type=Path, nargs="+", metavar="PATH")
+    verb.add_argument("--format", choices=("auto", *IMPORTERS), default="auto")
+    verb.add_argument("--map", type=Path, metavar="FILE", help="what the columns of a table mean (csv)")
+    verb.add_argument("--library", type=Path, required=True, metavar="DIR")
+    verb.add_argument("--person", default="", metavar="CODE")
+    verb.set_defaults(run=verbs.import_recording)
+
+
+def _inspect(add: _Verbs) -> None:
+    verb = add.add_parser("inspect", help="show what became of each sensor's samples")
+    verb.add_argument("take", type=Path, metavar="TAKE")
+    verb.add_argument("--json", action="store_true", help="for programs")
+    verb.add_argument("--truth", action="store_true", help="compare with the true motion of a synthetic take")
+    verb.set_defaults(run=verbs.inspect)
+
+
+def _solve(add: _Verbs) -> None:
+    verb = add.add_parser("solve", help="compute the motion of a take and show how it was found")
+    verb.add_argument("take", type=Path, metavar="TAKE")
+    _add_solving(verb)
+    verb.set_defaults(run=verbs.solve)
+
+
+def _export(add: _Verbs) -> None:
+    verb = add.add_parser("export", help="write a file for another program; it is read back before it is called done")
+    verb.add_argument("take", type=Path, metavar="TAKE")
+    verb.add_argument("--format", choices=("bvh", "csv"), required=True)
+    verb.add_argument("--table", choices=("joints", "orientations", "raw"), help="of csv (default: joints)")
+    presets = "; ".join(
+        f"{name}: {', '.join(keys)}" for name, keys in (("bvh", BVH_PRESETS), ("csv", CSV_PRESETS))
+    )
+    verb.add_argument("--preset", help=f"{presets} (default: the first)")
+    verb.add_argument(
+        "--fps",
+        type=_fps,
+        default=DEFAULT_RATE,
+        help=f"of bvh: {', '.join(map(str, RATES))} or native (default: {DEFAULT_RATE})",
+    )
+    verb.add_argument("-o", "--output", type=Path, required=True, metavar="FILE")
+    _add_solving(verb)
+    verb.set_defaults(run=verbs.export, usage_error=verb.error)
+
+
+def _add_solving(verb: argparse.ArgumentParser) -> None:
+    verb.add_argument("--attitude", choices=tuple(ESTIMATORS), default="vqf")
+    verb.add_argument("--method", choices=("offline", "live"), default="offline")
+    verb.add_argument(
+        "--calibration", default="recorded", metavar="recorded|latest|FILE", help="which gyroscope correction to use"
+    )
+    verb.add_argument(
+        "--pose",
+        dest="poses",
+        type=_pose,
+        action="append",
+        default=[],
+        metavar="NAME=FROM..TO",
+        help="a pose held between two times in s (n, t, bow, sit); may be repeated; replaces the recorded ones",
+    )
+
+
+def _seconds(text: str) -> float:
+    seconds = _number(text)
+    if not seconds > 0:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a length of time in seconds")
+    return seconds
+
+
+def _fps(text: str) -> int | None:
+    if text == "native":
+        return None
+    if text.isdecimal() and int(text) in RATES:
+        return int(text)
+    raise argparse.ArgumentTypeError(f"{text!r} is none of {', '.join(map(str, RATES))}, native")
+
+
+def _pose(text: str) -> Mark:
+    found = _POSE.fullmatch(text)
+    if found is None or found["name"] not in POSES:
+        raise argparse.ArgumentTypeError(f"{text!r} does not read like n=1.5..4 with one of {', '.join(POSES)}")
+    first, last = _number(found["first"]), _number(found["last"])
+    if not last >= first:
+        raise argparse.ArgumentTypeError(f"{text!r} ends before it begins")
+    return Mark(first, "pose", found["name"], last)
+
+
+def _number(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        return math.nan
