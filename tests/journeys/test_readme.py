@@ -18,7 +18,8 @@ needs_sh = pytest.mark.skipif(sys.platform == "win32", reason="README's commands
 def commands_below(heading: str, word: str) -> str:
     """Return the block of commands below ``heading`` that contains ``word``."""
     section = README.split(f"\n## {heading}\n")[1].split("\n## ")[0]
-    return next(block for block in re.findall(r"```sh\n(.*?)```", section, re.DOTALL) if word in block)
+    blocks: list[str] = re.findall(r"```sh\n(.*?)```", section, re.DOTALL)
+    return next(block for block in blocks if word in block)
 
 
 def run(commands: str, folder: Path) -> subprocess.CompletedProcess[str]:
