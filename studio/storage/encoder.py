@@ -137,6 +137,10 @@ class TakeEncoder:
         self._add_channels(builder, (*schema_records(), *self.channels.values()))
         return builder.finish()
 
+    def forget_block(self) -> None:
+        """Take back the number of the latest block, which is not going to be in the file: a gap means damage."""
+        self._blocks -= 1
+
     def channel_of(self, info: SensorInfo) -> int:
         """Return the channel of a sensor, which then stands in the file before its first sample."""
         sensor = info.sensor

@@ -58,14 +58,12 @@ class TakeFile:
         try:
             self._put(block.data)
         except OSError as error:
-            first = self.failure is None
             self.failure = self.failure or self._failed(error)
-            if not first:
-                return
             try:
                 self._filesystem.remove(self._ballast)
                 self._put(block.data)
             except OSError:
+                self._encoder.forget_block()
                 return
         self.ledger.add(block)
 

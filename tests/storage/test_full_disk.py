@@ -1,0 +1,178 @@
+"""A disk that fills up, fails or was never writable: what was recorded is safe, and it is said (F05, F06, F08)."""
+
+import errno
+import subprocess
+import sys
+import threading
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from studio.core.errors import DiskFull, FolderNotWritable, RecordingError
+from studio.storage.encoder import TakeEncoder
+from studio.storage.facts import Anchor, identity
+from studio.storage.take_file import BALLAST, RESERVE, TakeFile
+from studio.storage.take_reader import read_events, read_take
+from studio.storage.take_store import write_take
+from studio.storage.take_writer import WARN_S
+from tests.storage.disks import FullDisk, SmallDisk
+from tests.storage.recordings import DAY, SETUP, START, TAGS, sample, samples, start_writing
+
+SECONDS = 30
+GIB = 1 << 30
+
+
+def wait_until(happened: Callable[[], bool]) -> None:
+    pause = threading.Event()
+    while not happened():
+        pause.wait(0.002)
+
+
+@pytest.mark.parametrize("torn", [0, 60])
+@pytest.mark.parametrize("refused", range(9))
+def test_a_disk_full_at_any_write_keeps_everything_that_was_accepted(tmp_path: Path, refused: int, torn: int) -> None:
+    """Writes: 0 opening, 1 to 4 blocks, 5 last words, 6 end, 7 take.json; 8 never happens."""
+    kept, blocks = samples(8), 4
+    size = len(kept) // blocks
+    disk = FullDisk(refused, torn=torn)
+    encoder = TakeEncoder(identity("walk", "P014", "", SETUP, {}, Anchor("", START)))
+    if refused == 0:
+        with pytest.raises(DiskFull):
+            TakeFile(tmp_path, "walk", encoder, disk)
+        assert list(tmp_path.iterdir()) == []
+        return
+
+    file = TakeFile(tmp_path, "walk", encoder, disk)
+    for block in range(blocks):
+        if file.failure is None:
+            for encoded in encoder.blocks(kept[block * size : (block + 1) * size], [], []):
+                file.append(encoded)
+    if refused in (5, 6):  # the ballast had gone by then: another program took its room
+        with pytest.raises(DiskFull) as refusal:
+            file.finish()
+        assert refusal.value.kept_s == pytest.approx(kept[-1].time - START)
+    else:
+        file.finish()
+    take, report = read_take(file.folder)
+
+    accepted = min(refused, blocks) * size
+    assert (report.samples, report.damaged) == (accepted, 0)
+    assert report.finished == (refused not in (5, 6))
+    assert isinstance(file.failure, DiskFull) == (refused <= blocks)
+    assert np.sort(np.concatenate([s.arrival for s in take.streams])).tolist() == list(range(accepted))
+    assert not (file.folder / ".ballast").exists()
+
+
+def test_a_failed_recording_refuses_further_samples_in_silence(tmp_path: Path) -> None:
+    writer = start_writing(tmp_path, FullDisk(1))
+    for one in samples(1):
+        writer.sample(one)
+    wait_until(lambda: writer.failure is not None)
+    for one in samples(100):
+        writer.sample(one)
+        writer.raw("usb0", one.received, b"bytes")
+
+    assert 1 <= writer.stop().result(SECONDS).samples <= 15
+    assert isinstance(writer.failure, DiskFull)
+
+
+def test_a_disk_that_breaks_is_not_called_full(tmp_path: Path) -> None:
+    disk = FullDisk(2, errno.EIO, for_good=True)
+    writer = start_writing(tmp_path, disk)
+    for one in samples(1):
+        writer.sample(one)
+    wait_until(lambda: disk.writes >= 2)
+    writer.event("gap", {}, START)
+    wait_until(lambda: writer.failure is not None)
+
+    with pytest.raises(FolderNotWritable):
+        writer.stop().result(SECONDS)
+    take, report = read_take(writer.folder)
+    assert 1 <= report.samples <= 15
+    assert report.recovered
+    assert take.setup.stature == 1.81
+
+
+def test_a_take_that_cannot_be_stored_whole_is_not_stored_in_silence(tmp_path: Path) -> None:
+    take, _ = read_take(start_and_stop(tmp_path))
+
+    with pytest.raises(RecordingError):
+        write_take(take, tmp_path, DAY, filesystem=FullDisk(1))
+
+
+def start_and_stop(library: Path) -> Path:
+    writer = start_writing(library)
+    for one in samples(3):
+        writer.sample(one)
+    return writer.stop().result(SECONDS).folder
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no such limit on Windows")
+def test_a_real_limit_on_the_length_of_files(tmp_path: Path) -> None:
+    """What a FAT32 stick does at 4 GiB (EFBIG): what does not fit is lost, everything before it stays."""
+    program = f"""
+import resource, signal, threading
+from pathlib import Path
+from tests.storage.recordings import samples, start_writing
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+writer = start_writing(Path({str(tmp_path)!r}))
+resource.setrlimit(resource.RLIMIT_FSIZE, (400_000, 400_000))
+pause = threading.Event()
+for one in samples(400):
+    writer.sample(one)
+    if writer.failure is None and one.sensor == "tag:00000000":
+        pause.wait(0.01)
+try:
+    saved = writer.stop().result({SECONDS})
+    print("saved", writer.failure.kept_s, writer.folder)
+except Exception as error:
+    print(type(error).__name__, error.kept_s, writer.folder)
+"""
+    done = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True, timeout=60)
+
+    _, kept_s, folder = done.stdout.split()
+    take, report = read_take(Path(folder))
+    assert 100_000 < report.samples * 179 < 400_000
+    assert report.damaged == 0
+    assert take.duration() == pytest.approx(float(kept_s), abs=0.01)
+
+
+def test_recording_does_not_start_without_room(tmp_path: Path) -> None:
+    with pytest.raises(DiskFull) as refusal:
+        start_writing(tmp_path, SmallDisk(RESERVE + BALLAST - 1))
+
+    assert refusal.value.kept_s == 0.0
+    assert list(tmp_path.glob("*/*/*")) == []
+
+
+def test_recording_does_not_start_where_nothing_can_be_written(tmp_path: Path) -> None:
+    (tmp_path / "P014").write_text("a file where a folder should be")
+
+    with pytest.raises(FolderNotWritable):
+        start_writing(tmp_path)
+
+
+def test_the_operator_is_warned_ten_minutes_before_the_disk_is_full(tmp_path: Path) -> None:
+    # A take of one tag at 100 Hz grows by some 20 kB/s: 10 MB above the reserve last about 500 s.
+    writer = start_writing(tmp_path, SmallDisk(GIB, RESERVE + (10 << 20)), tags=1)
+    for frame in range(200):
+        writer.sample(sample(TAGS[0], frame))
+    wait_until(lambda: writer.seconds_left is not None)
+    left = writer.seconds_left
+    folder = writer.stop().result(SECONDS).folder
+
+    assert left is not None
+    assert 60 < left < WARN_S
+    assert [event.kind for event in read_events(folder)].count("disk") == 1
+    assert writer.failure is None
+
+
+def test_recording_stops_in_order_before_the_system_runs_out_of_room(tmp_path: Path) -> None:
+    writer = start_writing(tmp_path, SmallDisk(GIB, RESERVE - 1), tags=1)
+    writer.sample(sample(TAGS[0], 0))
+    wait_until(lambda: writer.failure is not None)
+
+    assert isinstance(writer.failure, DiskFull)
+    assert writer.stop().result(SECONDS).samples == 1
