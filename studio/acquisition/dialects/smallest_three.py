@@ -1,7 +1,7 @@
 """A unit quaternion in 48 bits: three components of 15 bits, and which one was left out.
 
 The largest component is left out and made positive by flipping all signs, so that it follows from the
-rest (PROTOCOL.md, "Smallest three"). Worst error 0.0067 degrees.
+rest (PROTOCOL.md, "Smallest three"). The error is 0.0028 degrees rms, 0.0086 at worst.
 """
 
 import math
