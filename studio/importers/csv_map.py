@@ -74,7 +74,7 @@ def read_csv(paths: Sequence[Path], map_file: Path) -> Take:
 
 def _name(paths: Sequence[Path], map_file: Path) -> str:
     if len(paths) == 1:
-        return paths[0].name if paths[0].is_dir() else paths[0].stem
+        return paths[0].resolve().name if paths[0].is_dir() else paths[0].stem
     return (paths[0] if paths else map_file).resolve().parent.name
 
 

@@ -70,7 +70,7 @@ def read_xio(*paths: Path) -> Take:
     assignment = guess_assignment(list(zip(sensors, [_plain_name(folder) for folder in folders], strict=True)))
     clocks = sorted(note["clock"] for note in notes if "clock" in note)
     return Take(
-        name=(folders[0] if folders[0] in paths else folders[0].parent).name,
+        name=(folders[0] if folders[0] in paths else folders[0].parent).resolve().name,
         person="",
         source="xio",
         # The device's calendar clock tells no time zone; it is read as UTC and said so.
@@ -87,7 +87,11 @@ def _sensor_folders(paths: Sequence[Path]) -> list[Path]:
     for path in paths:
         if not path.is_dir():
             continue
-        inside = [path] if _is_sensor(path) else [child for child in path.iterdir() if _is_sensor(child)]
+        try:
+            inside = [path] if _is_sensor(path) else [child for child in path.iterdir() if _is_sensor(child)]
+        except OSError:
+            # A folder that may not be listed is no recording.
+            continue
         found += [folder for folder in inside if folder not in found]
     return sorted(found, key=lambda folder: (folder.name.lower(), str(folder)))
 

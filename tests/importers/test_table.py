@@ -108,6 +108,13 @@ def test_text_in_a_column_nobody_asks_for_does_no_harm(table):
     assert np.array_equal(rows.values, [[0, 1], [1, 2]])
 
 
+def test_a_cell_of_absurd_length_is_a_bad_row(table):
+    """The csv module refuses cells above 128 KiB with an error of its own."""
+    absurd = f'"{"x" * 200_000}",1,2'
+
+    assert table(f"{absurd}\n{PLAIN}{absurd}\n").read([0, 1, 2]).dropped == 1
+
+
 def test_bad_rows_far_inside_a_long_table_are_found_and_the_others_kept(table):
     lines = [f"{i},{i % 7},{-i}" for i in range(30_000)]
     for bad in (9_000, 9_001, 29_999):
@@ -166,6 +173,9 @@ def test_a_row_counts_the_same_alone_and_among_good_ones(table, rows):
 def test_any_bytes_are_a_table_or_refused(table, content):
     try:
         opened = table(content)
-        opened.read(range(opened.width))
+        rows = opened.read(range(opened.width))
     except RecordingUnreadable:
         return
+
+    assert rows.values.shape[1] == opened.width
+    assert len(rows.values) + rows.dropped <= len(opened.lines)

@@ -156,6 +156,13 @@ def test_a_single_sensor_folder_is_a_recording_too(copy):
     assert looks_like_xio([copy / PELVIS])
 
 
+def test_the_take_is_named_after_the_folder_from_wherever_it_is_seen(copy, monkeypatch):
+    monkeypatch.chdir(copy)
+
+    assert read_xio(Path()).name == "recording"
+    assert read_xio(Path(PELVIS)).name == PELVIS
+
+
 def test_without_quaternions_the_recording_has_no_orientation(copy):
     (copy / PELVIS / "Quaternion.csv").unlink()
     (stream,) = read_xio(copy).streams
@@ -225,6 +232,15 @@ def test_a_wrong_column_is_named_with_its_file_and_line(copy):
         read_xio(copy)
     assert refusal.value.file.endswith("Inertial.csv")
     assert (refusal.value.line, refusal.value.reason) == (1, "there is no column 'Accelerometer X (g)'")
+
+
+def test_what_a_sensor_does_not_tell_is_unknown(copy):
+    for name in ("Battery.csv", "Temperature.csv", "Command.json"):
+        (copy / PELVIS / name).unlink()
+    (stream,) = read_xio(copy).streams
+
+    assert np.isnan([stream.battery, stream.temperature, stream.rssi]).all()
+    assert len(stream) == 900
 
 
 @pytest.mark.parametrize("content", ["", "Timestamp (us)\n", "\x00\x01\x02", "Timestamp (us),W,X,Y,Z\n1,1,0,0,0\n"])
