@@ -1,0 +1,106 @@
+"""Other programs read our BVH: joints where the motion has them, rates exact, a T-pose at rest.
+
+Run with ``-m peers``; builds its environments first (400 MB, minutes) where ``environments.py`` says.
+"""
+
+import json
+import subprocess
+from typing import Any
+
+import numpy as np
+import pytest
+
+from studio.core import body
+from studio.core.body import Segment
+from studio.export.bvh import PRESETS, RATES, bvh_blocks
+from studio.importers.bvh import joint_positions, read_bvh
+from tests.export.moving_body import moving_body, standing
+from tests.peers.environments import Peers, build
+
+pytestmark = [pytest.mark.peers, pytest.mark.timeout(900)]
+
+TOLERANCE = 1e-5  # m; a thousandth of a centimetre
+FRAMES = 301
+LOOKED_AT = [0, 1, 150, 299, 300]
+NAMES = [segment.name for segment in Segment]
+PARENT_NAMES = {name: NAMES[parent] if parent >= 0 else None for name, parent in zip(NAMES, body.PARENTS, strict=True)}
+READERS = ("blender", "three", "bvhio", "pybvh", "studio")
+
+
+@pytest.fixture(scope="session")
+def peers() -> Peers:
+    return build()
+
+
+def write(folder, motion, preset, fps):
+    path = folder / f"{preset}_{fps}.bvh"
+    path.write_bytes(b"".join(bvh_blocks(motion, PRESETS[preset], fps)))
+    return path
+
+
+def asked(command, path, frames):
+    done = subprocess.run(
+        [*command, str(path), ",".join(map(str, frames))], capture_output=True, text=True, check=False, timeout=600
+    )
+    answers = [line for line in done.stdout.splitlines() if line.startswith("{")]
+    assert answers, (done.stderr or done.stdout)[-1000:]
+    return json.loads(answers[-1])
+
+
+def by_all(peers, path, frames):
+    """What every reader says of the file, by its name."""
+    found: dict[str, dict[str, Any]] = {}
+    for command in (peers.blender, peers.three, peers.readers):
+        found |= asked(command, path, frames)
+    own = joint_positions(read_bvh(path))
+    found["studio"] = {
+        "frames": len(own),
+        "positions": {str(frame): dict(zip(NAMES, own[frame].tolist(), strict=True)) for frame in frames},
+    }
+    return found
+
+
+@pytest.mark.parametrize("swing", [0.5, 1.5])
+@pytest.mark.parametrize("preset", PRESETS)
+def test_all_readers_put_every_joint_where_the_motion_has_it(peers, tmp_path, preset, swing):
+    motion = moving_body(FRAMES, frame_s=1 / 60, swing=swing)
+    meant = motion.joint_positions()[..., [1, 2, 0]] * PRESETS[preset].units_per_metre
+
+    read = by_all(peers, write(tmp_path, motion, preset, None), LOOKED_AT)
+
+    apart = {}
+    for reader in READERS:
+        assert read[reader]["frames"] == FRAMES, reader
+        found = np.array([[read[reader]["positions"][str(f)][name] for name in NAMES] for f in LOOKED_AT])
+        apart[reader] = np.abs(found - meant[LOOKED_AT]).max() / PRESETS[preset].units_per_metre
+    print(f"{preset}, swing {swing}: cm apart", {reader: float(f"{100 * m:.1e}") for reader, m in apart.items()})
+    assert max(apart.values()) < TOLERANCE, apart
+    for reader in ("blender", "three"):
+        assert read[reader]["parents"] == PARENT_NAMES
+        assert read[reader]["warnings"] == []
+    assert set(read["bvh"]["joints"]) == set(NAMES)
+
+
+@pytest.mark.parametrize("fps", RATES)
+def test_blender_takes_exactly_the_rate_on_offer(peers, tmp_path, fps):
+    read = asked(peers.blender, write(tmp_path, moving_body(26), "blender", fps), [0])["blender"]
+
+    assert round(read["fps"], 4) == fps
+    assert read["frames"] == fps // 2 + 1
+
+
+@pytest.mark.parametrize("preset", PRESETS)
+def test_blenders_rest_pose_is_a_t_pose_as_tall_as_the_person(peers, tmp_path, preset):
+    unit = PRESETS[preset].units_per_metre
+
+    read = asked(peers.blender, write(tmp_path, standing("n", stature=1.83), preset, 60), [0])["blender"]
+
+    head_and_tail = np.array([read["rest"][name] for name in NAMES]) / unit
+    for arm, side in ((body.LEFT_ARM, 1), (body.RIGHT_ARM, -1)):
+        along = np.concatenate([head_and_tail[list(arm), 0], head_and_tail[arm[-1:], 1]])
+        np.testing.assert_allclose(np.ptp(along[:, 1:], axis=0), 0, atol=TOLERANCE)
+        assert (side * np.diff(along[:, 0]) > 0.1).all()
+    heights = head_and_tail[..., 1]
+    assert np.ptp(heights) == pytest.approx(1.83, abs=0.001)
+    assert (np.linalg.norm(head_and_tail[:, 1] - head_and_tail[:, 0], axis=1) > 0.02).all()
+    assert read["warnings"] == []
