@@ -77,6 +77,7 @@ find_complete_python() {
 # prepare run|dev: afterwards $venv/bin/python has everything.
 prepare() {
     venv=${KINETAG_VENV:-$root/.venv}
+    case $venv in /*) ;; *) venv=$PWD/$venv ;; esac
     if ! suitable "$venv/bin/python"; then
         find_complete_python
         if [ -e "$venv" ] && [ ! -e "$venv/pyvenv.cfg" ]; then

@@ -52,10 +52,11 @@ class Computer:
         (self.venv / "pyvenv.cfg").touch()
         (self.venv / f"kinetag-{kind}.stamp").write_text(environment.fingerprint(), encoding="utf-8")
 
-    def run(self, script: str, *words: str) -> subprocess.CompletedProcess[str]:
+    def run(self, script: str, *words: str, venv: str = "") -> subprocess.CompletedProcess[str]:
         return subprocess.run(
             [str(self.programs / "sh"), str(ROOT / script), *words],
-            env={"PATH": str(self.programs), "KINETAG_VENV": str(self.venv), "TMPDIR": str(self.programs.parent)},
+            env={"PATH": str(self.programs), "KINETAG_VENV": venv or str(self.venv), "TMPDIR": str(self.programs.parent)},
+            cwd=self.venv.parent,
             stdin=subprocess.DEVNULL,
             capture_output=True,
             text=True,
@@ -231,6 +232,16 @@ def test_kinds_of_tests_are_chosen_and_other_words_go_to_pytest(computer: Comput
     assert computer.log.read_text(encoding="utf-8").splitlines() == [
         "-m", "pytest", "-m", "long or peers", "-k", "walk and run",
     ]
+
+
+def test_the_environment_may_be_named_from_where_one_stands(computer: Computer):
+    computer.ready_environment("dev")
+    computer.on_path("gcc", "cat >/dev/null")
+
+    run = computer.run("test.sh", "tests/core", venv="venv")
+
+    assert run.returncode == 0, run.stderr
+    assert computer.log.read_text(encoding="utf-8").split() == ["-m", "pytest", "tests/core"]
 
 
 def test_an_environment_for_tests_is_enough_to_start_but_not_the_reverse(tmp_path: Path):
