@@ -53,9 +53,10 @@ class Computer:
         (self.venv / f"kinetag-{kind}.stamp").write_text(environment.fingerprint(), encoding="utf-8")
 
     def run(self, script: str, *words: str, venv: str = "") -> subprocess.CompletedProcess[str]:
+        facts = {"PATH": self.programs, "KINETAG_VENV": venv or self.venv, "TMPDIR": self.venv.parent}
         return subprocess.run(
             [str(self.programs / "sh"), str(ROOT / script), *words],
-            env={"PATH": str(self.programs), "KINETAG_VENV": venv or str(self.venv), "TMPDIR": str(self.programs.parent)},
+            env={name: str(fact) for name, fact in facts.items()},
             cwd=self.venv.parent,
             stdin=subprocess.DEVNULL,
             capture_output=True,
