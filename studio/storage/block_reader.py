@@ -33,7 +33,7 @@ from studio.storage.profile import (
 )
 
 WINDOW = 1 << 20  # bytes read at a time while looking for the next block
-MAX_GARBAGE = 1 << 30  # bytes that are no take in one file; looking through them takes half a second
+MAX_GARBAGE = 512 << 20  # bytes of one file that are no take: half an hour of 15 tags; looking through them takes 1 s
 MAX_RECORDS = 4096  # in one block; MAX_CHANNELS with one index each, their schemas and a few chunks
 _RECORD = "<BQ"
 _NO_RECORD = (McapError, struct.error, UnicodeDecodeError, ValueError, OverflowError)

@@ -8,7 +8,7 @@ from mcap.opcode import Opcode
 from mcap.records import Header
 
 from studio import __version__
-from studio.core.errors import DiskFull, FolderNotWritable, NotATake
+from studio.core.errors import Damaged, DiskFull, FolderNotWritable, NotATake
 from studio.storage.block_reader import BlockReader, Record, read_attachment_record
 from studio.storage.blocks import Block, BlockBuilder, RecordFacts, encode
 from studio.storage.encoder import identity_record, schema_records
@@ -37,7 +37,7 @@ def recover(folder: Path, filesystem: FileSystem = FILES) -> Path:
 
     Raises
     ------
-    NotATake, WrittenByNewerStudio, TakeUnsafe
+    NotATake, WrittenByNewerStudio, TakeUnsafe, Damaged
         The file cannot be read.
     DiskFull, FolderNotWritable, VerificationFailed
         The finished file cannot be written, or another studio is at it; the original is as it was.
@@ -71,6 +71,8 @@ def _finish(reader: BlockReader, folder: Path, filesystem: FileSystem) -> int:
     """Write and verify the finished take; return how much damage there was."""
     for _ in reader.messages():
         pass  # now all channels are known, whichever of their records was damaged
+    if reader.identity is None and not reader.channels:
+        raise Damaged(str(folder / PART_FILE), 0.0)
     target = folder / UNFINISHED
     filesystem.remove(folder / BALLAST_FILE)
     filesystem.remove(target)

@@ -45,20 +45,22 @@ class TakeDocument(msgspec.Struct, frozen=True):
         )
 
 
-def load_document(folder: Path, recorded_name: str) -> tuple[TakeDocument, documents.State]:
-    """Read ``take.json``.
+def load_document(folder: Path, recorded_name: str, *, repair: bool) -> tuple[TakeDocument, documents.State]:
+    """Read ``take.json``; a lost, damaged or newer one says "as recorded".
 
-    A lost or damaged one is made again from what was recorded; the damaged one is kept as
-    ``take.json.bad``. One of a newer studio is left alone, and the take is seen as recorded.
+    Parameters
+    ----------
+    repair : write a lost or damaged one again and keep the damaged one as ``take.json.bad``; one of a
+        newer studio is left alone
     """
     file = folder / TAKE_JSON
     document, state = documents.load(file, TakeDocument, SCHEMA)
     if document is not None:
         return document, state
     document = TakeDocument(name=recorded_name)
-    if state == "damaged":
+    if repair and state == "damaged":
         documents.set_aside(file)
-    if state != "newer":
+    if repair and state != "newer":
         with contextlib.suppress(OSError):  # a take on a read-only disk is read all the same
             documents.save(file, document)
     return document, state

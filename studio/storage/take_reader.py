@@ -91,7 +91,8 @@ def read_take(path: Path) -> tuple[Take, ReadReport]:
     infos = content.infos | {info.sensor: info for info in content.told if info.sensor in content.infos}
     streams = tuple(_stream(infos[sensor], rows, zero) for sensor, rows in content.rows.items())
     take = _take(reader, streams, content.marks(zero), zero)
-    document, state = load_document(file.parent, take.name)
+    # Beside a single file that somebody was sent there may be anything.
+    document, state = load_document(file.parent, take.name, repair=path.is_dir())
     report = ReadReport(
         finished=reader.finished,
         recovered=not reader.finished or any(event.kind == "recovered" for event in content.events),

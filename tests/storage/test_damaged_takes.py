@@ -92,13 +92,12 @@ def repeat(data: bytearray, random: np.random.Generator) -> None:
     data[target:target] = data[start : start + 3000]
 
 
-MUTATIONS: tuple[Callable[[bytearray, np.random.Generator], None], ...] = (flip, zero, noise, cut_off, lose, repeat)
+Mutation = Callable[[bytearray, np.random.Generator], None]
+MUTATIONS: tuple[Mutation, ...] = (flip, zero, noise, cut_off, lose, repeat)
 
 
 @pytest.mark.parametrize("mutation", MUTATIONS)
-def test_a_mutated_take_is_read_as_far_as_it_is_good(
-    original: Path, tmp_path: Path, mutation: Callable[[bytearray, np.random.Generator], None]
-) -> None:
+def test_a_mutated_take_is_read_as_far_as_it_is_good(original: Path, tmp_path: Path, mutation: Mutation) -> None:
     truth, _ = read_take(original)
     random = np.random.default_rng(MUTATIONS.index(mutation))
     whole = original.read_bytes()
@@ -120,7 +119,7 @@ def test_a_mutated_take_is_read_as_far_as_it_is_good(
             assert report.damaged or not report.finished
 
     # One block of six, and the channels of the first block stand again at the end.
-    floor = {cut_off: 0.3, zero: 0.7, noise: 0.7, lose: 0.7}.get(mutation, 0.8)
+    floor = {"cut_off": 0.3, "zero": 0.7, "noise": 0.7, "lose": 0.7}.get(mutation.__name__, 0.8)
     assert np.mean(kept) >= floor * recorded
 
 
