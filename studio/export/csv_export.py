@@ -8,8 +8,8 @@ from studio.analysis.joint_angles import joint_angles
 from studio.core.errors import NothingToExport
 from studio.core.pose import Motion
 from studio.core.sample import Flag
-from studio.export.csv_tables import Table, column_words, joints_table, orientations_table, raw_table
-from studio.export.csv_text import PRESETS, compare_with_table, csv_blocks
+from studio.export.csv_tables import PRESETS, Table, column_words, joints_table, orientations_table, raw_table
+from studio.export.csv_text import compare_with_table, csv_blocks
 from studio.export.material import Material, Product, Wish
 from studio.export.sidecar import sidecar
 

@@ -14,7 +14,7 @@ from studio.core.pose import Motion
 from studio.core.sample import SensorId, Stream
 from studio.core.take import Assignment, Take
 from studio.export.material import Orientations
-from studio.export.number_format import Numbers, Words
+from studio.export.number_format import Numbers, Punctuation, Words
 from studio.export.sidecar import missing_before
 
 Array = NDArray[np.float64]
@@ -30,6 +30,22 @@ class Table:
     columns: tuple[Numbers | Words, ...]
     """Words as they are, in UTF-8: quoting is the writer's business."""
     rows: int
+
+
+@dataclass(frozen=True)
+class Preset:
+    """What a spreadsheet or a statistics program expects between the cells."""
+
+    label: str
+    punctuation: Punctuation
+    mark: bytes
+    """Byte order mark."""
+
+
+PRESETS = {
+    "plain": Preset("RFC 4180", Punctuation(), b""),
+    "excel": Preset("Excel (semicolon, decimal comma)", Punctuation(b",", b";"), b"\xef\xbb\xbf"),
+}
 
 
 def joints_table(motion: Motion) -> Table:

@@ -2,7 +2,6 @@
 
 import csv
 from collections.abc import Iterator
-from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 
@@ -10,27 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from studio.core.errors import ReadBackDiffers
-from studio.export.csv_tables import Table
-from studio.export.number_format import Numbers, Punctuation, Words, as_text
+from studio.export.csv_tables import Preset, Table
+from studio.export.number_format import Numbers, Words, as_text
 
 BLOCK = 1024  # rows
 FORMULA = ("=", "+", "-", "@", "\t", "\r")  # a spreadsheet computes cells that begin so (ASVS 1.2.10)
-
-
-@dataclass(frozen=True)
-class Preset:
-    """What a spreadsheet or a statistics program expects between the cells."""
-
-    label: str
-    punctuation: Punctuation
-    mark: bytes
-    """Byte order mark."""
-
-
-PRESETS = {
-    "plain": Preset("RFC 4180", Punctuation(), b""),
-    "excel": Preset("Excel (semicolon, decimal comma)", Punctuation(b",", b";"), b"\xef\xbb\xbf"),
-}
 
 
 def csv_blocks(table: Table, preset: Preset) -> Iterator[bytes]:

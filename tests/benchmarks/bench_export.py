@@ -21,8 +21,8 @@ from pymotion.io.bvh import BVH  # type: ignore[import-not-found]
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from studio.export.bvh import PRESETS, bvh_blocks
+from studio.export.csv_tables import PRESETS as CSV_PRESETS
 from studio.export.csv_tables import joints_table
-from studio.export.csv_text import PRESETS as CSV_PRESETS
 from studio.export.csv_text import csv_blocks
 from studio.export.number_format import Numbers, Punctuation, as_text
 from studio.export.resampling import BLOCK

@@ -15,8 +15,8 @@ from studio.core.body import Place
 from studio.core.errors import NothingToExport, ReadBackDiffers
 from studio.core.sample import SensorId
 from studio.core.take import Assignment, Setup, Take
-from studio.export.csv_tables import column_words, joints_table, orientations_table, raw_table
-from studio.export.csv_text import PRESETS, compare_with_table, csv_blocks
+from studio.export.csv_tables import PRESETS, column_words, joints_table, orientations_table, raw_table
+from studio.export.csv_text import compare_with_table, csv_blocks
 from tests.export.moving_body import moving_body, standing
 from tests.export.small_take import FORMULA_SENSOR, LEFT, RIGHT, small_take, stream_of
 
@@ -242,11 +242,16 @@ class TestReadingBack:
 
     @pytest.mark.parametrize("preset", PRESETS)
     @pytest.mark.parametrize("table", [joints_table(moving_body(1500)), raw_table(small_take())], ids=["joints", "raw"])
-    def test_what_was_written_is_accepted(self, tmp_path, table, preset):
+    def test_what_was_written_is_accepted_and_one_row_more_is_not(self, tmp_path, table, preset):
         path = tmp_path / "table.csv"
-        path.write_bytes(b"".join(csv_blocks(table, PRESETS[preset])))
-
+        data = b"".join(csv_blocks(table, PRESETS[preset]))
+        path.write_bytes(data)
         compare_with_table(path, table, PRESETS[preset])
+
+        path.write_bytes(data + data.splitlines(keepends=True)[-1])
+
+        with pytest.raises(ReadBackDiffers, match="more than meant"):
+            compare_with_table(path, table, PRESETS[preset])
 
     @pytest.mark.parametrize(
         ("old", "new", "words"),

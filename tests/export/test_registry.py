@@ -9,14 +9,14 @@ import pytest
 from studio.core.body import Place
 from studio.core.errors import CannotWrite, NothingToExport, ReadBackDiffers
 from studio.core.take import Alignment, LimbAlignment
-from studio.export import bvh, csv_text
+from studio.export import bvh, csv_tables
 from studio.export.material import Material, Wish
 from studio.export.registry import EXPORTERS, export_file
 from studio.importers.bvh import read_bvh
 from tests.export.moving_body import moving_body
 from tests.export.small_take import LEFT, RIGHT, small_take
 
-PRESETS = {name: list(bvh.PRESETS if name == "bvh" else csv_text.PRESETS) for name in EXPORTERS}
+PRESETS = {name: list(bvh.PRESETS if name == "bvh" else csv_tables.PRESETS) for name in EXPORTERS}
 EACH = [(name, preset) for name in EXPORTERS for preset in PRESETS[name]]
 
 

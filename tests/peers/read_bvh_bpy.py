@@ -10,8 +10,8 @@ import json
 import os
 import sys
 
-import bpy
-from bpy_extras.io_utils import axis_conversion
+import bpy  # type: ignore[import-not-found]
+from bpy_extras.io_utils import axis_conversion  # type: ignore[import-not-found]
 
 FORWARD, UP = "-Z", "Y"  # the importer's defaults
 
