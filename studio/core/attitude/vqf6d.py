@@ -16,18 +16,17 @@ REST_ACCELERATION = 0.3  # m/s²
 SMALLEST_SIGMA = 0.01  # °/s; nothing cheap keeps its offset better than that
 
 
+LARGE_SIGMA = 0.5  # °/s; an offset known no better is estimated in a pass of its own before looking back
+
+
 class Vqf6D:
     """Gyroscope and accelerometer; tilt bounded by gravity, heading only by the offset's quality."""
 
     def __init__(self, frame_s: float, offset_sigma: float) -> None:
         self._frame_s = frame_s
-        self._parameters = {
-            "biasClip": BIAS_CLIP,
-            "biasSigmaInit": max(math.degrees(offset_sigma), SMALLEST_SIGMA),
-            "restThGyr": REST_RATE,
-            "restThAcc": REST_ACCELERATION,
-        }
-        self._filter = vqf.VQF(frame_s, **self._parameters)
+        self._sigma = max(math.degrees(offset_sigma), SMALLEST_SIGMA)
+        self._filter = self._fresh()
+        self._levelled = False
         self._rate = np.zeros(3)
 
     def step(
@@ -35,16 +34,43 @@ class Vqf6D:
     ) -> NDArray[np.float64]:
         """Advance by one frame; a frame without accelerometer turns by the gyroscope alone."""
         np.divide(increment, self._frame_s, out=self._rate)
-        if math.isfinite(acceleration[0]):
+        if not math.isfinite(acceleration[0]):
+            self._filter.updateGyr(self._rate)
+        elif self._levelled:
             self._filter.update(self._rate, acceleration)
         else:
-            self._filter.updateGyr(self._rate)
+            _level(self._filter, self._rate, acceleration)
+            self._levelled = True
         return np.asarray(self._filter.getQuat6D())
 
     def run(self, run: Run) -> NDArray[np.float64]:
         """Return the acausal estimate: forward and backward through the run."""
         rate = run.increments / self._frame_s
-        if len(rate) > 1:
-            rate[0] = rate[1]
-        result = vqf.offlineVQF(rate, np.ascontiguousarray(run.acceleration), None, self._frame_s, self._parameters)
-        return np.asarray(result["quat6D"])
+        rate[0] = rate[min(1, len(rate) - 1)]
+        force = np.ascontiguousarray(run.acceleration)
+        sigma = self._sigma
+        if sigma > LARGE_SIGMA:
+            forward = self._fresh()
+            _level(forward, rate[0], force[0])
+            forward.updateBatch(rate, force)
+            offset, sigma = forward.getBiasEstimate()
+            rate, sigma = rate - offset, max(math.degrees(sigma), SMALLEST_SIGMA)
+        return np.asarray(vqf.offlineVQF(rate, force, None, self._frame_s, self._parameters(sigma))["quat6D"])
+
+    def _fresh(self) -> "vqf.VQF":
+        return vqf.VQF(self._frame_s, **self._parameters(self._sigma))
+
+    def _parameters(self, sigma: float) -> dict[str, float]:
+        return {
+            "biasClip": BIAS_CLIP,
+            "biasSigmaInit": sigma,
+            "restThGyr": REST_RATE,
+            "restThAcc": REST_ACCELERATION,
+        }
+
+
+def _level(fresh: "vqf.VQF", rate: NDArray[np.float64], force: NDArray[np.float64]) -> None:
+    """Give a filter its first tilt; vqf 2.1 would take that first correction for 20 °/s of offset."""
+    fresh.setMotionBiasEstEnabled(False)
+    fresh.update(rate, force)
+    fresh.setMotionBiasEstEnabled(True)
