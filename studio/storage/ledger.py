@@ -35,7 +35,10 @@ class Ledger:
         """s, ``Sample.time`` of the last sample that is safe."""
         self._crc = 0
         self._content = hashlib.blake2b(digest_size=16)
-        self._chunk_indexes = bytearray()
+        # An hour has 144,000 chunks, whose indexes are much alike: packed they take 6 MB instead of 22.
+        self._packer = zlib.compressobj(1)
+        self._packed = bytearray()
+        self._index_size = 0
         self._chunks = 0
         self._start: int | None = None
         self._end = 0
@@ -70,7 +73,7 @@ class Ledger:
 
     def index_size(self) -> int:
         """Return about how long the end of the file is with its index, bytes."""
-        return len(self._chunk_indexes) + (64 << 10)
+        return self._index_size + (64 << 10)
 
     def closing(self, channels: Mapping[str, Channel], *, indexed: bool) -> bytes:
         """Return what ends the file: the summary and the footer.
@@ -110,10 +113,13 @@ class Ledger:
             (Opcode.SCHEMA, encode(*schemas)),
             (Opcode.CHANNEL, encode(*channels.values())),
             (Opcode.STATISTICS, encode(statistics)),
-            (Opcode.CHUNK_INDEX, bytes(self._chunk_indexes) if indexed else b""),
+            (Opcode.CHUNK_INDEX, self._chunk_indexes() if indexed else b""),
             (Opcode.ATTACHMENT_INDEX, encode(*self._attachments)),
             (Opcode.METADATA_INDEX, encode(*self._metadata)),
         ]
+
+    def _chunk_indexes(self) -> bytes:
+        return zlib.decompress(self._packed + self._packer.copy().flush())
 
     def _add_chunk(self, chunk: ChunkFacts) -> None:
         at = index_at = self.size + chunk.offset + chunk.length
@@ -122,7 +128,7 @@ class Ledger:
             offsets[channel] = at
             at += index_length(messages)
             self.counts[channel] += messages
-        self._chunk_indexes += encode(
+        index = encode(
             ChunkIndex(
                 chunk_length=chunk.length,
                 chunk_start_offset=self.size + chunk.offset,
@@ -135,6 +141,8 @@ class Ledger:
                 uncompressed_size=chunk.data_size,
             )
         )
+        self._packed += self._packer.compress(index)
+        self._index_size += len(index)
         self._content.update(chunk.data)
         self._chunks += 1
         self._start = chunk.start if self._start is None else min(self._start, chunk.start)
