@@ -248,8 +248,9 @@ class LiveSession:
         if link.paced:
             return
         await asyncio.sleep(0)
-        while self.recording is not None and self.recording.writer.fill > BUSY_QUEUE:
-            await asyncio.sleep(0.005)  # noqa: ASYNC110 (the take-writer is a thread without an event loop)
+        # The take-writer is a thread without an event loop: it is looked at, not waited for.
+        while self.recording is not None and self.recording.writer.fill > BUSY_QUEUE:  # noqa: ASYNC110
+            await asyncio.sleep(0.005)
 
     def _take_in(self, intake: LinkIntake, batch: Sequence[Arrival | Known | Cue]) -> None:
         for piece in batch:

@@ -3,6 +3,7 @@
 import argparse
 import math
 import re
+from collections.abc import Callable
 from pathlib import Path
 
 import studio
@@ -29,7 +30,7 @@ def parser() -> argparse.ArgumentParser:
     """Return the parser of the whole command line."""
     top = argparse.ArgumentParser(prog="studio", description="Kinetag Studio: motion capture with body-worn sensors.")
     top.add_argument("--version", action="version", version=f"Kinetag Studio {studio.__version__}")
-    add = top.add_subparsers(dest="verb", metavar="VERB", title="verbs")
+    add = top.add_subparsers(dest="verb", metavar="VERB", title="verbs").add_parser
     _devices(add)
     _record(add)
     _import(add)
@@ -39,17 +40,17 @@ def parser() -> argparse.ArgumentParser:
     return top
 
 
-_Verbs = "argparse._SubParsersAction[argparse.ArgumentParser]"
+AddVerb = Callable[..., argparse.ArgumentParser]
 
 
-def _devices(add: _Verbs) -> None:
-    verb = add.add_parser("devices", help="list the sources that can be opened now")
+def _devices(add: AddVerb) -> None:
+    verb = add("devices", help="list the sources that can be opened now")
     verb.add_argument("--json", action="store_true", help="for programs")
     verb.set_defaults(run=verbs.devices)
 
 
-def _record(add: _Verbs) -> None:
-    verb = add.add_parser(
+def _record(add: AddVerb) -> None:
+    verb = add(
         "record",
         help="record a take and print its folder",
         epilog=SOURCES,
@@ -63,8 +64,8 @@ def _record(add: _Verbs) -> None:
     verb.set_defaults(run=verbs.record)
 
 
-def _import(add: _Verbs) -> None:
-    verb = add.add_parser("import", help="turn a foreign recording into a take and print its folder")
+def _import(add: AddVerb) -> None:
+    verb = add("import", help="turn a foreign recording into a take and print its folder")
     verb.add_argument("paths", type=Path, nargs="+", metavar="PATH")
     verb.add_argument("--format", choices=("auto", *IMPORTERS), default="auto")
     verb.add_argument("--map", type=Path, metavar="FILE", help="what the columns of a table mean (csv)")
@@ -73,29 +74,27 @@ def _import(add: _Verbs) -> None:
     verb.set_defaults(run=verbs.import_recording)
 
 
-def _inspect(add: _Verbs) -> None:
-    verb = add.add_parser("inspect", help="show what became of each sensor's samples")
+def _inspect(add: AddVerb) -> None:
+    verb = add("inspect", help="show what became of each sensor's samples")
     verb.add_argument("take", type=Path, metavar="TAKE")
     verb.add_argument("--json", action="store_true", help="for programs")
     verb.add_argument("--truth", action="store_true", help="compare with the true motion of a synthetic take")
     verb.set_defaults(run=verbs.inspect)
 
 
-def _solve(add: _Verbs) -> None:
-    verb = add.add_parser("solve", help="compute the motion of a take and show how it was found")
+def _solve(add: AddVerb) -> None:
+    verb = add("solve", help="compute the motion of a take and show how it was found")
     verb.add_argument("take", type=Path, metavar="TAKE")
     _add_solving(verb)
     verb.set_defaults(run=verbs.solve)
 
 
-def _export(add: _Verbs) -> None:
-    verb = add.add_parser("export", help="write a file for another program; it is read back before it is called done")
+def _export(add: AddVerb) -> None:
+    verb = add("export", help="write a file for another program; it is read back before it is called done")
     verb.add_argument("take", type=Path, metavar="TAKE")
     verb.add_argument("--format", choices=("bvh", "csv"), required=True)
     verb.add_argument("--table", choices=("joints", "orientations", "raw"), help="of csv (default: joints)")
-    presets = "; ".join(
-        f"{name}: {', '.join(keys)}" for name, keys in (("bvh", BVH_PRESETS), ("csv", CSV_PRESETS))
-    )
+    presets = "; ".join(f"{name}: {', '.join(keys)}" for name, keys in (("bvh", BVH_PRESETS), ("csv", CSV_PRESETS)))
     verb.add_argument("--preset", help=f"{presets} (default: the first)")
     verb.add_argument(
         "--fps",

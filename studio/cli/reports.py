@@ -15,7 +15,10 @@ from studio.storage.take_reader import ReadReport
 
 STAGES = {"read": "reading", "solve": "solving", "write": "writing"}
 
-_HEADER = f"{'sensor':<26} {'place':<16} {'samples':>8} {'lost':>6} {'gaps':>5} {'longest':>8} {'rate':>7} {'clipped':>7} {'battery':>7} {'skew':>8}  calibration"
+_HEADER = (
+    f"{'sensor':<26} {'place':<16} {'samples':>8} {'lost':>6} {'gaps':>5} {'longest':>8} "
+    f"{'rate':>7} {'clipped':>7} {'battery':>7} {'skew':>8}  calibration"
+)
 
 
 def inspection(take: Take, report: ReadReport, truth: TruthReport | None) -> dict[str, Any]:
@@ -89,7 +92,9 @@ def truth_values(truth: TruthReport) -> dict[str, Any]:
 
 def truth_text(truth: TruthReport) -> list[str]:
     """Return the comparison with the true motion as lines."""
-    lines = [f"rotation error of each joint against the true motion, RMS from {truth.from_s:.1f} s to {truth.to_s:.1f} s"]
+    lines = [
+        f"rotation error of each joint against the true motion, RMS from {truth.from_s:.1f} s to {truth.to_s:.1f} s"
+    ]
     lines += [f"  {place.value:<16} {value:6.2f}°" for place, value in truth.joint_rms_deg.items()]
     return [*lines, f"  median {truth.median():.2f}°, worst {truth.worst():.2f}°"]
 

@@ -44,9 +44,7 @@ def devices(arguments: Namespace) -> None:
 
 def record(arguments: Namespace) -> None:
     """Record a take; Ctrl+C and a polite kill end it as the time would."""
-    request = RecordRequest(
-        arguments.source, arguments.seconds, arguments.library, arguments.person, arguments.name
-    )
+    request = RecordRequest(arguments.source, arguments.seconds, arguments.library, arguments.person, arguments.name)
     runtime = Runtime()
     session = LiveSession(pre_roll=FOREVER)
     stop = asyncio.Event()
@@ -68,9 +66,7 @@ def record(arguments: Namespace) -> None:
 
 def import_recording(arguments: Namespace) -> None:
     """Import a foreign recording."""
-    folder = library.import_into(
-        arguments.library, arguments.paths, arguments.format, arguments.map, arguments.person
-    )
+    folder = library.import_into(arguments.library, arguments.paths, arguments.format, arguments.map, arguments.person)
     print(folder)
 
 

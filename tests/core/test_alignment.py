@@ -20,7 +20,7 @@ LOWER = PRESETS["lower"]
 
 
 def test_a_bow_gives_the_mounting_of_every_tag():
-    take, truth = worn_take(PLACES)
+    take, _truth = worn_take(PLACES)
 
     alignment = solve(take).motion.alignment
 
@@ -70,7 +70,7 @@ def t_pose_take():
 
 
 def test_two_poses_give_the_arms_their_mounting_without_a_bow():
-    take, truth = t_pose_take()
+    take, _truth = t_pose_take()
 
     alignment = solve(take).motion.alignment
 
@@ -96,7 +96,7 @@ def strapped_take(off):
 
 
 def test_the_strap_rule_stands_in_and_is_worth_15_degrees():
-    take, truth = strapped_take(np.radians(10))
+    take, _truth = strapped_take(np.radians(10))
 
     motion = solve(take).motion
 
@@ -190,7 +190,7 @@ def test_a_pose_outside_the_take_is_refused_with_its_times():
 
 
 def test_a_pose_may_be_a_single_moment():
-    take, truth = worn_take(LOWER)
+    take, _truth = worn_take(LOWER)
 
     motion = solve(take, SolveOptions(poses=(Mark(2.0, "pose", "n", 2.0), BOW_HOLD))).motion
 

@@ -10,9 +10,12 @@ FRAME = 0.02
 OFFSET = np.radians([12.0, -7.0, 19.0])
 
 
-def lying(seconds, rng, noise=np.radians(0.2)):
+NOISE = np.radians(0.2)  # rad/s; quantised quaternions 20 ms apart
+
+
+def lying(seconds, rng):
     n = round(seconds / FRAME)
-    return OFFSET + noise * rng.normal(size=(n, 3)), np.tile([0.0, 0.0, GRAVITY], (n, 1)) + 0.02 * rng.normal(
+    return OFFSET + NOISE * rng.normal(size=(n, 3)), np.tile([0.0, 0.0, GRAVITY], (n, 1)) + 0.02 * rng.normal(
         size=(n, 3)
     )
 

@@ -5,8 +5,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
-from scipy.spatial.transform import Rotation
-
 from studio.core import rotation
 from studio.core import single_rotation as single
 
@@ -17,6 +15,8 @@ VECTORS = RNG.normal(size=(500, 3))
 
 
 def scipy_of(q):
+    from scipy.spatial.transform import Rotation
+
     return Rotation.from_quat(np.asarray(q)[..., [1, 2, 3, 0]])
 
 

@@ -104,7 +104,7 @@ def test_live_is_the_solver_stepped_sample_by_sample():
 
 
 def test_a_restarted_tag_is_not_measured_until_its_heading_is_known_again():
-    take, truth = worn_take(LOWER, 24.0)
+    take, _truth = worn_take(LOWER, 24.0)
     row = LOWER.index(Place.LEFT_SHANK)
     shank = take.streams[row]
     restart = int(14 * RATE)
@@ -207,7 +207,7 @@ def test_limbs_that_moved_during_the_hold_are_named():
 
 
 def test_unmeasured_segments_follow_the_stated_rules():
-    take, truth = worn_take((Place.PELVIS, Place.CHEST, Place.LEFT_FOREARM))
+    take, _truth = worn_take((Place.PELVIS, Place.CHEST, Place.LEFT_FOREARM))
 
     motion = solve(take).motion
 
