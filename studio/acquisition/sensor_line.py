@@ -25,6 +25,7 @@ FRAME_SPAN = 1.0  # s between two packets that may tell the frame length: the co
 FRAME_COUNTS = 64  # frames between them at most
 
 LOOSE_FIT = 1.0  # frames between counter and clock: synchronising shifts the grid by less than one
+OFF_GRID = 3 * 64e-6  # s between them, packet after packet: the frame is another; stamps are good to a tick of 64 µs
 TIGHT_FIT = 0.1  # frames, of a clock nobody touched: 64 µs ticks are 0.006 frames of 10 ms
 FIT_SKEW = 2e-4  # of the frames passed: a grid that is not quite the clock's
 HOST_FIT = 0.25  # s between counter and arrivals: delays of a radio and a busy USB port
@@ -61,6 +62,8 @@ class Spot(NamedTuple):
     """s, this computer's monotonic clock."""
     missing: int = 0
     """Frames skipped just before."""
+    redeemed: int = 0
+    """Packets doubted before that are explained now."""
     stepped: bool = False
     """The sensor's clock was set, or this computer's arrivals jumped, while the counter went on."""
 
@@ -104,6 +107,7 @@ class SensorLine:
         self._history: deque[_Point] = deque()
         self._seen = 0  # bit k: the frame k before the newest has come
         self._doubt: _Doubt | None = None
+        self._off_grid = 0  # packets in a row
 
     @property
     def clock_map(self) -> ClockMap:
@@ -123,9 +127,14 @@ class SensorLine:
         misfit = abs(steps - frames) - FIT_SKEW * abs(frames)
         lag = received - self._newest.time - ticks * tick
         if misfit <= LOOSE_FIT and lag >= EARLIEST and (lag <= LATEST or ticks * tick <= LATEST):
-            if steps > 0:
-                return self._go_on(reading, received, steps, ticks)
-            return self._look_back(reading, received, steps, ticks)
+            if steps <= 0:
+                return self._look_back(reading, received, steps, ticks)
+            self._off_grid = self._off_grid + 1 if misfit * frame_s > OFF_GRID else 0
+            if self._off_grid >= CONFIRMATIONS:
+                other = self._frame_between(reading.sequence - self._sequence, ticks)
+                if other not in (0.0, frame_s):
+                    return self._begin_epoch(reading, received, other, Verdict.REFRAMED)
+            return self._go_on(reading, received, steps, ticks)
         if misfit <= TIGHT_FIT and steps > 0:
             # The arrivals jumped, not the sensor: a suspended computer, or a backlog of minutes.
             return self._step(reading, received, steps, ticks)
@@ -177,8 +186,7 @@ class SensorLine:
             frame = before.frame + max(round((time - before.time) / self.frame_s), 1)
         self._history.clear()
         self.first_frame = frame
-        self._seen = 0
-        self._doubt = None
+        self._off_grid = 0
         return self._accept(reading, received, _Point(frame, ticks, time), verdict, 0)
 
     def _time_of(self, reading: Reading, received: float, ticks: int) -> float:
@@ -211,7 +219,7 @@ class SensorLine:
 
     def _accept(self, reading: Reading, received: float, point: _Point, verdict: Verdict, steps: int) -> Spot:
         window = self._window()
-        self._seen = (self._seen << steps | 1) & ((2 << window) - 1) if steps <= window else 1
+        self._seen = (self._seen << steps | 1) & ((2 << window) - 1) if 0 < steps <= window else 1
         self._sequence, self._clock, self._received = reading.sequence, reading.clock, received
         self._newest = point
         self._history.append(point)
@@ -257,7 +265,7 @@ class SensorLine:
         self._doubt = doubt
         if doubt.packets < CONFIRMATIONS:
             return DOUBTED
-        return self._restart(reading, received, doubt)
+        return self._restart(reading, received, doubt.frame_s)
 
     def _continues(self, doubt: _Doubt, reading: Reading, received: float) -> float:
         """Return the frame length on which ``reading`` follows the doubted line, 0 when it does not."""
@@ -272,12 +280,16 @@ class SensorLine:
             return 0.0
         return frame_s or doubt.frame_s
 
-    def _restart(self, reading: Reading, received: float, doubt: _Doubt) -> Spot:
+    def _restart(self, reading: Reading, received: float, frame_s: float) -> Spot:
         passed = received - self._received
-        ticks = self._ticks_since(reading, received)
-        goes_on = abs(ticks * self._traits.clock_tick - passed) <= HOST_FIT and passed <= FRAME_SPAN
-        verdict = Verdict.REFRAMED if goes_on and doubt.frame_s != self.frame_s else Verdict.RESTARTED
+        elapsed = self._ticks_since(reading, received) * self._traits.clock_tick
+        goes_on = abs(elapsed - passed) <= HOST_FIT and passed <= FRAME_SPAN
+        verdict = Verdict.REFRAMED if goes_on and frame_s != self.frame_s else Verdict.RESTARTED
+        spot = self._begin_epoch(reading, received, frame_s, verdict)
+        return spot._replace(redeemed=CONFIRMATIONS - 1)
+
+    def _begin_epoch(self, reading: Reading, received: float, frame_s: float, verdict: Verdict) -> Spot:
         self.epoch += 1
         spot = self._start(reading, received, verdict)
-        self.frame_s = doubt.frame_s
+        self.frame_s = frame_s
         return spot

@@ -8,7 +8,7 @@ from typing import Final
 
 from studio.acquisition.dialects.dialect import Reading, Traits
 from studio.acquisition.health import SensorHealth
-from studio.acquisition.sensor_line import CONFIRMATIONS, SensorLine, Spot, Verdict
+from studio.acquisition.sensor_line import SensorLine, Spot, Verdict
 from studio.core.sample import Correction, Sample, SensorId, SensorInfo, Vector
 from studio.core.timeline import SharedClock
 
@@ -106,7 +106,7 @@ class SensorTracker:
 
     def _tell_new_epoch(self, spot: Spot) -> None:
         # The packets that raised the doubt made sense after all.
-        self.health.inconsistent -= CONFIRMATIONS - 1
+        self.health.inconsistent -= spot.redeemed
         if spot.verdict is Verdict.RESTARTED:
             self.health.reboots += 1
         kind = "reboot" if spot.verdict is Verdict.RESTARTED else "frame length"
