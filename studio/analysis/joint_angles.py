@@ -49,7 +49,7 @@ class JointAngle:
 
 @dataclass(frozen=True)
 class _Line:
-    """An angle of a joint that is taken apart as Z-X'-Y''."""
+    """An angle about one axis of the sequence a joint is taken apart in."""
 
     name: str
     axis: Literal["Z", "X", "Y"]
@@ -117,8 +117,9 @@ def joint_angles(motion: Motion) -> tuple[JointAngle, ...]:
 
     Notes
     -----
-    The pelvis is taken against the wearer's world of the hold with OpenSim's sequence (Z-X'-Y''): tilt
-    and list are about the axes faced at the hold, so that they change roles as the wearer turns round.
+    The pelvis is taken against the world as Y-X'-Z'': heading first, so that tilt and list keep their
+    meaning when the wearer turns round. In OpenSim's Z-X'-Y'' a lean forwards of 10 degrees would read
+    as tilt -10 at heading 0, as list at 90 and as tilt +10 at 180; at heading 0 both agree.
 
     Angles run on without jumps at ±180 degrees while the sensors are measured and begin anew, within
     ±180, after a gap: how often someone turned meanwhile cannot be known.
@@ -129,7 +130,7 @@ def joint_angles(motion: Motion) -> tuple[JointAngle, ...]:
 def _angles(motion: Motion) -> Iterator[JointAngle]:
     if Place.PELVIS in motion.measured:
         pelvis = rotation.multiply(rotation.inverse(frames.N_POSE), motion.world_from_segment[:, body.Segment.Hips])
-        yield from _taken_apart(pelvis, motion.measured[Place.PELVIS], "", _PELVIS)
+        yield from _taken_apart(pelvis, motion.measured[Place.PELVIS], "", _PELVIS, "YXZ")
     for place, (side, lines) in _JOINTS.items():
         if _is_worn(motion, place):
             yield from _taken_apart(_joint(motion, place, side), _both_measured(motion, place), side, lines)
@@ -156,15 +157,19 @@ def _joint(motion: Motion, place: Place, side: Side) -> Array:
 
 
 def _taken_apart(
-    parent_from_child: Array, measured: NDArray[np.bool_], side: Side, lines: tuple[_Line, ...]
+    parent_from_child: Array,
+    measured: NDArray[np.bool_],
+    side: Side,
+    lines: tuple[_Line, ...],
+    sequence: str = "ZXY",
 ) -> Iterator[JointAngle]:
     angles = np.full((len(measured), 3), np.nan)
     for run in _runs(measured):
-        angles[run] = euler.unwrap_continuous(euler.to_euler(parent_from_child[run], "ZXY"), "ZXY")
+        angles[run] = euler.unwrap_continuous(euler.to_euler(parent_from_child[run], sequence), sequence)
     for line in lines:
         mirrored = side == "left" and line.axis != "Z"
-        values = angles[:, "ZXY".index(line.axis)] * (-line.sign if mirrored else line.sign)
-        yield JointAngle(_named(side, line.name), values, line.positive, "ZXY", line.low_confidence)
+        values = angles[:, sequence.index(line.axis)] * (-line.sign if mirrored else line.sign)
+        yield JointAngle(_named(side, line.name), values, line.positive, sequence, line.low_confidence)
 
 
 def _shoulder(chest_from_arm: Array, measured: NDArray[np.bool_], side: Side) -> Iterator[JointAngle]:

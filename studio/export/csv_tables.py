@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from studio.analysis.joint_angles import joint_angles
+from studio.analysis.ledger import missing_before
 from studio.core import euler, rotation
 from studio.core.errors import NothingToExport
 from studio.core.pose import Motion
@@ -15,7 +16,6 @@ from studio.core.sample import SensorId, Stream
 from studio.core.take import Assignment, Take
 from studio.export.material import Orientations
 from studio.export.number_format import Numbers, Punctuation, Words
-from studio.export.sidecar import missing_before
 
 Array = NDArray[np.float64]
 

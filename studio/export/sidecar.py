@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import studio
+from studio.analysis.ledger import SensorLedger, ledger
 from studio.core.body import PLACES
 from studio.core.pose import Motion
 from studio.core.sample import Stream
@@ -37,7 +38,7 @@ def sidecar(take: Take, motion: Motion | None, of_the_file: Mapping[str, Any]) -
             "versions": dict(take.versions),
         },
         "body": {"stature_m": take.setup.stature, "stature_known": take.setup.stature_known},
-        "sensors": [_sensor(take, stream) for stream in take.streams],
+        "sensors": [_sensor(take, *pair) for pair in zip(take.streams, ledger(take), strict=True)],
         "places_without_sensor": [place.value for place in PLACES if place not in assignment.sensors],
         **of_the_file,
     }
@@ -52,30 +53,18 @@ def sidecar(take: Take, motion: Motion | None, of_the_file: Mapping[str, Any]) -
     return (json.dumps(_finite(content), ensure_ascii=False, allow_nan=False, indent=2) + "\n").encode()
 
 
-def _sensor(take: Take, stream: Stream) -> dict[str, Any]:
-    place = take.setup.assignment.place_of(stream.info.sensor)
-    gaps = missing_before(stream)
+def _sensor(take: Take, stream: Stream, account: SensorLedger) -> dict[str, Any]:
     calibrations = [known for known in take.setup.calibrations if known.sensor == stream.info.sensor]
     return {
         "sensor": stream.info.sensor,
         "label": stream.info.label,
-        "place": place.value if place else None,
+        "place": account.place,
         "frame_s": stream.info.frame_s,
-        "samples": len(stream),
-        "lost": int(gaps.sum()),
-        "longest_gap_s": float(gaps.max(initial=0)) * stream.info.frame_s,
+        "samples": account.samples,
+        "lost": account.lost,
+        "longest_gap_s": account.longest_gap_s,
         "calibration": _calibration(calibrations[0]) if calibrations else None,
     }
-
-
-def missing_before(stream: Stream) -> NDArray[np.int64]:
-    """Return how many frames were lost just before each sample, (n,); 0 where a sensor started anew."""
-    order = np.lexsort((stream.frame, stream.epoch))  # samples may arrive out of order
-    steps = np.diff(stream.frame[order]) - 1
-    steps[np.diff(stream.epoch[order]) != 0] = 0
-    missing = np.zeros(len(stream), np.int64)
-    missing[order[1:]] = np.maximum(steps, 0)
-    return missing
 
 
 def _calibration(calibration: Calibration) -> dict[str, Any]:

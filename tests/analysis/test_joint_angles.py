@@ -109,6 +109,18 @@ def test_the_pelvis_turns_against_the_world(axis, turn, name):
     assert the_only_one(bent(Segment.Hips, axis, turn * TWENTY)) == {name: 20.0}
 
 
+@pytest.mark.parametrize("heading", [0, 90, 180, -120])
+def test_leaning_forwards_is_tilt_wherever_the_wearer_faces(heading):
+    leaning = bent(Segment.Hips, LEFT, TWENTY)
+    faced = rotation.about(UP, np.radians(heading))
+    motion = replace(leaning, world_from_segment=rotation.multiply(faced, leaning.world_from_segment))
+
+    angles = degrees_of(motion)
+
+    assert angles["pelvis_tilt"][0] == pytest.approx(-20)
+    assert angles["pelvis_list"][0] == pytest.approx(0, abs=1e-9)
+
+
 @pytest.mark.parametrize(("side", "arm", "outward"), [("left", Segment.LeftArm, 1), ("right", Segment.RightArm, -1)])
 def test_the_arm_has_an_elevation_and_its_plane(side, arm, outward):
     sideways = degrees_of(bent(arm, FORWARD, outward * np.radians(60)))
