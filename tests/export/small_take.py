@@ -15,7 +15,7 @@ def stream_of(sensor, frames, epochs, first_arrival=0, every=1):
     """Return a stream whose numbers tell its rows apart; temperature and RSSI are unknown."""
     frame, epoch = np.array(frames, np.int64), np.array(epochs, np.int32)
     count = len(frame)
-    time = np.arange(count, dtype=np.float64) * 0.02
+    time = (frame - min(frames, default=0)) * 0.02
     row = np.arange(count, dtype=np.float64)[:, None]
     return Stream(
         info=SensorInfo(sensor, 0.02, label="Ä"),
