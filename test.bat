@@ -23,6 +23,7 @@ if errorlevel 1 (
 )
 cd /d "%~dp0"
 set "KINETAG_FAILED="
+if not "%KINETAG_MARKERS:peers=%"=="%KINETAG_MARKERS%" call :stage setting-up-the-peers "%KINETAG_PYTHON%" tests\peers\environments.py
 if defined KINETAG_MARKERS (
     call :stage pytest "%KINETAG_PYTHON%" -m pytest -m "%KINETAG_MARKERS%" %KINETAG_WORDS%
 ) else if defined KINETAG_WORDS (

@@ -67,6 +67,9 @@ tool() {
     "$venv/bin/python" -m "$@"
 }
 
+# Fetched before the tests, so that their time limits are about reading and not about the network.
+case $markers in *peers*) stage "setting up the peers" "$venv/bin/python" tests/peers/environments.py ;; esac
+
 if [ -n "$markers" ]; then
     stage "pytest ($markers)" tool pytest -m "$markers" "$@"
 elif [ $# -gt 0 ]; then

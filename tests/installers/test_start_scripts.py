@@ -231,6 +231,7 @@ def test_kinds_of_tests_are_chosen_and_other_words_go_to_pytest(computer: Comput
 
     assert computer.run("test.sh", "--long", "-k", "walk and run", "--peers").returncode == 0
     assert computer.log.read_text(encoding="utf-8").splitlines() == [
+        "tests/peers/environments.py",
         "-m", "pytest", "-m", "long or peers", "-k", "walk and run",
     ]
 
