@@ -33,7 +33,6 @@ EARLIEST = -0.5  # s before it can have been measured: the first packets were he
 LATEST = 1.0  # s behind the line, unless it goes on where the line was
 
 CONFIRMATIONS = 3  # doubted packets in a row that make a line of their own
-CONFIRM_SPAN = 5.0  # s between two of them at most
 
 SLOWEST = 0.5  # of a step on the device's clock is kept when the map learns of less delay: time never turns
 
@@ -103,6 +102,7 @@ class SensorLine:
         self._sequence = 0
         self._clock = 0
         self._received = 0.0
+        self._is_synced = False
         self._newest = _Point(0, 0, 0.0)
         self._history: deque[_Point] = deque()
         self._seen = 0  # bit k: the frame k before the newest has come
@@ -126,7 +126,8 @@ class SensorLine:
         steps = nearest(reading.sequence - self._sequence, self._traits.sequence_modulus, round(frames))
         misfit = abs(steps - frames) - FIT_SKEW * abs(frames)
         lag = received - self._newest.time - ticks * tick
-        if misfit <= LOOSE_FIT and lag >= EARLIEST and (lag <= LATEST or ticks * tick <= LATEST):
+        is_timely = EARLIEST <= lag <= LATEST
+        if misfit <= LOOSE_FIT and (is_timely or (lag > LATEST and ticks * tick <= LATEST)):
             if steps <= 0:
                 return self._look_back(reading, received, steps, ticks)
             self._off_grid = self._off_grid + 1 if misfit * frame_s > OFF_GRID else 0
@@ -138,7 +139,8 @@ class SensorLine:
         if misfit <= TIGHT_FIT and steps > 0:
             # The arrivals jumped, not the sensor: a suspended computer, or a backlog of minutes.
             return self._step(reading, received, steps, ticks)
-        if reading.flags & TIME_SYNCED:
+        if reading.flags & TIME_SYNCED and not (is_timely and self._is_synced):
+            # Its clock was set: it has just heard a receiver, or its receiver started anew.
             steps = self._steps_by_arrival(reading, received)
             if steps > 0:
                 return self._step(reading, received, steps, round(steps * frame_s / tick))
@@ -221,6 +223,7 @@ class SensorLine:
         window = self._window()
         self._seen = (self._seen << steps | 1) & ((2 << window) - 1) if 0 < steps <= window else 1
         self._sequence, self._clock, self._received = reading.sequence, reading.clock, received
+        self._is_synced = bool(reading.flags & TIME_SYNCED)
         self._newest = point
         self._history.append(point)
         while len(self._history) > window + 2:
@@ -273,12 +276,16 @@ class SensorLine:
         expected = round(passed / self._traits.clock_tick)
         ticks = nearest(reading.clock - doubt.clock, self._traits.clock_modulus, expected)
         elapsed = ticks * self._traits.clock_tick
-        if not (0 < elapsed <= CONFIRM_SPAN and abs(passed - elapsed) <= -EARLIEST):
+        if elapsed <= 0 or abs(passed - elapsed) > -EARLIEST:
             return 0.0
-        frame_s = self._frame_between(reading.sequence - doubt.sequence, ticks)
-        if doubt.frame_s and frame_s and frame_s != doubt.frame_s:
-            return 0.0
-        return frame_s or doubt.frame_s
+        told = self._frame_between(reading.sequence - doubt.sequence, ticks)
+        if told:
+            return told if doubt.frame_s in (0.0, told) else 0.0
+        # Too far apart to tell it: they must fit the length known.
+        frame_s = doubt.frame_s or self.frame_s
+        frames = elapsed / frame_s
+        steps = nearest(reading.sequence - doubt.sequence, self._traits.sequence_modulus, round(frames))
+        return frame_s if abs(steps - frames) <= LOOSE_FIT + FIT_SKEW * frames else 0.0
 
     def _restart(self, reading: Reading, received: float, frame_s: float) -> Spot:
         passed = received - self._received

@@ -268,6 +268,44 @@ def test_a_restart_is_another_epoch_and_time_goes_on(was_on, was_off, loss):
     assert kinds(tracker).count("reboot") == 1
 
 
+def test_a_restart_is_found_though_the_tag_is_hardly_heard():
+    tracker, tag = link(), Tag()
+    samples(tracker, tag.heard(range(5000)))
+
+    after = samples(tracker, replace(tag, powered=205.0).heard(range(7, 1000, 100)))
+
+    assert {s.epoch for s in after} == {1}
+    assert len(after) == 8
+
+
+@pytest.mark.parametrize("counter", range(3, 253, 7))
+def test_a_synchronised_tag_that_restarted_unheard_is_told_by_its_counter(counter):
+    """By the first packet heard it follows its receiver again, so only the counter jumped."""
+    tracker, tag = link(), Tag(clock=50.0, flags=Flag.TIME_SYNCED)
+    samples(tracker, tag.heard(range(512)))
+    again = (
+        (tag.reading(frame)._replace(sequence=(frame + counter) % 256), tag.measured(frame) + tag.delay)
+        for frame in range(712, 800)
+    )
+
+    after = samples(tracker, again)
+
+    assert {s.epoch for s in after} == {1}
+    assert tracker.health[SENSOR].reboots == 1
+
+
+@pytest.mark.parametrize("step", [-400.0, -0.9, -0.3, -0.05, 0.05, 0.3, 0.9, 400.0])
+def test_a_clock_set_by_any_amount_on_hearing_a_receiver_is_no_restart(step):
+    tracker, tag = link(), Tag(clock=450.0)
+    synced = replace(tag, clock=tag.clock + step, flags=Flag.TIME_SYNCED)
+
+    found = samples(tracker, [*tag.heard(range(100)), *synced.heard(range(100, 200))])
+
+    assert frames(found) == list(range(200))
+    assert {s.epoch for s in found} == {0}
+    assert tracker.health[SENSOR].inconsistent == 0
+
+
 def test_packets_of_a_restart_are_not_held_against_the_tag():
     tracker, tag = link(), Tag()
     samples(tracker, tag.heard(range(500)))
