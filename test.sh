@@ -39,9 +39,18 @@ needs_compiler() {
     has_compiler || stop "gcc is there but cannot compile: install it anew, then start again."
 }
 
+has_blender_libraries() {
+    [ "$(uname)" != Linux ] || "$venv/bin/python" -c 'import ctypes, sys; [ctypes.CDLL(name) for name in sys.argv[1:]]' \
+        libX11.so.6 libXrender.so.1 libXfixes.so.3 libXi.so.6 libxkbcommon.so.0 libSM.so.6 >/dev/null 2>&1
+}
+
 needs_peers() {
     if ! command -v node >/dev/null 2>&1 || ! command -v npm >/dev/null 2>&1; then
         install_debian "The peers read our files with Node.js, which is missing" "install Node.js" nodejs npm
+    fi
+    if ! has_blender_libraries; then
+        install_debian "Blender, which reads our files, needs libraries that are missing" "install those of X11" \
+            libx11-6 libxrender1 libxfixes3 libxi6 libxkbcommon0 libsm6
     fi
 }
 
@@ -60,8 +69,8 @@ stage() {
 }
 
 needs_compiler
-case $markers in *peers*) needs_peers ;; esac
 prepare dev
+case $markers in *peers*) needs_peers ;; esac
 cd "$root"
 tool() {
     "$venv/bin/python" -m "$@"

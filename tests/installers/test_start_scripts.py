@@ -228,12 +228,26 @@ def test_kinds_of_tests_are_chosen_and_other_words_go_to_pytest(computer: Comput
     computer.on_path("gcc", "cat >/dev/null")
     computer.on_path("node", "exit 0")
     computer.on_path("npm", "exit 0")
+    computer.on_path("uname", "echo Darwin")
 
     assert computer.run("test.sh", "--long", "-k", "walk and run", "--peers").returncode == 0
     assert computer.log.read_text(encoding="utf-8").splitlines() == [
         "tests/peers/environments.py",
         "-m", "pytest", "-m", "long or peers", "-k", "walk and run",
     ]
+
+
+def test_what_the_peers_need_is_installed_before_they_are_asked(computer: Computer):
+    computer.user(0)
+    computer.ready_environment("dev")
+    computer.on_path("gcc", "cat >/dev/null")
+    computer.on_path("uname", "echo Darwin")
+    computer.on_path("apt-get", f'echo "$@" >> {computer.log}')
+
+    computer.run("test.sh", "--peers")
+
+    first, then, *_ = computer.log.read_text(encoding="utf-8").splitlines()
+    assert (first, then) == ("install -y --no-install-recommends nodejs npm", "tests/peers/environments.py")
 
 
 def test_the_environment_may_be_named_from_where_one_stands(computer: Computer):
