@@ -75,7 +75,7 @@ class Worker:
                     return content[0]
                 else:
                     raise content[0]
-        except (EOFError, BrokenPipeError) as lost:
+        except (EOFError, OSError) as lost:
             self._pipe = self._process = None
             raise WorkerLost from lost
 

@@ -1,6 +1,7 @@
 """Ledgers and reports as text for people and as values for JSON."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
@@ -13,13 +14,11 @@ from studio.core.take import Take
 from studio.storage.facts import to_json
 from studio.storage.take_reader import ReadReport
 
+_HEADINGS = (
+    "sensor", "place", "samples", "lost", "gaps", "longest", "rate", "clipped", "battery", "skew", "calibration",
+)  # fmt: skip
+
 STAGES = {"read": "reading", "solve": "solving", "write": "writing"}
-
-_HEADER = (
-    f"{'sensor':<26} {'place':<16} {'samples':>8} {'lost':>6} {'gaps':>5} {'longest':>8} "
-    f"{'rate':>7} {'clipped':>7} {'battery':>7} {'skew':>8}  calibration"
-)
-
 
 def inspection(take: Take, report: ReadReport, truth: TruthReport | None) -> dict[str, Any]:
     """Return what ``inspect --json`` prints."""
@@ -50,8 +49,7 @@ def inspection_text(take: Take, report: ReadReport, truth: TruthReport | None) -
         f"{take.name or 'take'}  {take.person}  {take.duration():.2f} s  {report.samples} samples  from {take.source}",
         *_condition(report),
         "",
-        _HEADER,
-        *(_row(account) for account in ledger(take)),
+        *_columns([_HEADINGS, *(_cells(account) for account in ledger(take))]),
     ]
     if take.marks:
         lines += ["", *(_mark(mark.time, mark.end, f"{mark.kind} {mark.label}") for mark in take.marks)]
@@ -108,14 +106,33 @@ def _condition(report: ReadReport) -> list[str]:
     return lines
 
 
-def _row(a: SensorLedger) -> str:
-    battery = f"{a.battery:.0%}" if math.isfinite(a.battery) else "–"
-    skew = f"{a.clock_skew_ppm:+.0f} ppm" if math.isfinite(a.clock_skew_ppm) else "–"
-    longest = f"{a.longest_gap_s * 1000:.0f} ms" if a.lost else "–"
+def _cells(a: SensorLedger) -> tuple[str, ...]:
     return (
-        f"{a.sensor:<26} {a.place or '–':<16} {a.samples:>8} {a.lost:>6} {a.gaps:>5} {longest:>8} "
-        f"{a.rate_hz:>4.1f} Hz {a.clipped:>7} {battery:>7} {skew:>8}  {a.calibration}"
+        a.sensor,
+        a.place or "–",
+        str(a.samples),
+        str(a.lost),
+        str(a.gaps),
+        f"{a.longest_gap_s * 1000:.0f} ms" if a.lost else "–",
+        f"{a.rate_hz:.1f} Hz",
+        str(a.clipped),
+        f"{a.battery:.0%}" if math.isfinite(a.battery) else "–",
+        f"{a.clock_skew_ppm:+.0f} ppm" if math.isfinite(a.clock_skew_ppm) else "–",
+        a.calibration,
     )
+
+
+def _columns(rows: Sequence[tuple[str, ...]]) -> list[str]:
+    """Return a table as lines: words to the left, numbers to the right."""
+    widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
+    words = (0, 1, len(widths) - 1)
+    return [
+        "  ".join(
+            cell.ljust(width) if column in words else cell.rjust(width)
+            for column, (cell, width) in enumerate(zip(row, widths, strict=True))
+        ).rstrip()
+        for row in rows
+    ]
 
 
 def _mark(time: float, end: float, text: str) -> str:
