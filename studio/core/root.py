@@ -19,7 +19,10 @@ POINT_HYSTERESIS = 0.01  # m; heel to ball
 _Corners = list[list[list[float]]]
 """Foot, heel or ball, coordinate: relative to the Hips, m, world axes."""
 
-_FEET = (Segment.LeftFoot, Segment.RightFoot)
+_FEET = [Segment.LeftFoot, Segment.RightFoot]
+_CHAIN = np.array([[foot - 2, foot - 1, foot] for foot in _FEET]).T
+"""(3, 2): thigh, shank, foot of both legs."""
+_PARENTS_DOWN = np.array([[Segment.Hips, foot - 2, foot - 1] for foot in _FEET]).T
 
 
 class Root:
@@ -77,15 +80,7 @@ class Root:
 
 def _foot_points(skeleton: Skeleton, world_from_segment: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return heel and ball of both feet relative to the Hips, (n, 2 feet, 2 points, 3), m, world axes."""
-    n = len(world_from_segment)
-    points = np.empty((n, 2, 2, 3))
-    for index, foot in enumerate(_FEET):
-        chain = [foot - 2, foot - 1, foot]
-        ankle = np.zeros((n, 3))
-        parent = 0
-        for segment in chain:
-            ankle += rotation.rotate(world_from_segment[:, parent], skeleton.offsets[segment])
-            parent = segment
-        for corner, local in enumerate(skeleton.foot_points()):
-            points[:, index, corner] = ankle + rotation.rotate(world_from_segment[:, foot], local)
-    return points
+    links = rotation.rotate(world_from_segment[:, _PARENTS_DOWN], skeleton.offsets[_CHAIN])
+    ankles = links.sum(axis=1)
+    soles = rotation.rotate(world_from_segment[:, _FEET][:, :, None], skeleton.foot_points())
+    return np.asarray(ankles[:, :, None] + soles)
