@@ -165,6 +165,8 @@ class LinkTracker:
     """
 
     def __init__(self, link: str, traits: Traits) -> None:
+        self.infos: dict[SensorId, SensorInfo] = {}
+        """What is known about each sensor now."""
         self.health: dict[SensorId, SensorHealth] = {}
         self.ignored = 0
         """Readings of sensors beyond the most one link may have."""
@@ -175,11 +177,6 @@ class LinkTracker:
         self._sensors: dict[SensorId, SensorTracker] = {}
         self._events: deque[Event] = deque(maxlen=MOST_EVENTS)
         self._told_pairs: set[tuple[int, SensorId, SensorId]] = set()
-
-    @property
-    def infos(self) -> dict[SensorId, SensorInfo]:
-        """What is known about each sensor now."""
-        return {sensor: tracker.info for sensor, tracker in self._sensors.items()}
 
     @property
     def shared_clock(self) -> tuple[float, float]:
@@ -197,6 +194,7 @@ class LinkTracker:
         elif reading.facts is not None or reading.number != tracker.info.number:
             self._look_for_twins(reading, received)
         sample = tracker.accept(reading, received)
+        self.infos[reading.sensor] = tracker.info
         if self._shared.restarts != self._shared_restarts:
             self._shared_restarts = self._shared.restarts
             self._events.append(("shared clock restarted", {"time": received}))
