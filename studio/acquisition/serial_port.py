@@ -18,7 +18,7 @@ from studio.acquisition.driver import Arrival, Cue, Found, Known
 from studio.core.errors import LinkError, PortBusy, PortForbidden, PortGone, SourceUnreadable
 
 READ_TIMEOUT = 0.1  # s; closing waits at most so long for the reader
-GATHER = 0.01  # s between two reads: at 1 Mbaud 1000 bytes, a quarter of the smallest buffer of a system; waking costs more than reading
+GATHER = 0.01  # s between two reads: 1000 bytes at 1 Mbaud, a quarter of the smallest buffer of a system
 WRITE_TIMEOUT = 0.5  # s; an order is 20 bytes
 BUFFER = 1 << 20  # bytes asked of Windows, whose own 4096 hold 0.04 s
 MOST_HELD = 8 << 20  # bytes kept for a consumer that stalls: 80 s of a full line
