@@ -109,8 +109,9 @@ class BlockReader:
             self._count_missing(int(fields["number"]))
             body_at = position + BLOCK_HEAD_SIZE
             body = self._read(body_at, int(fields["body_length"]))
-            whole = len(body) == fields["body_length"] and zlib.crc32(body) == fields["body_crc"]
-            records = list(islice(_split(body, whole), MAX_RECORDS + 1))
+            cut_off = len(body) < fields["body_length"]
+            whole = not cut_off and zlib.crc32(body) == fields["body_crc"]
+            records = list(islice(_split(body, whole, cut_off), MAX_RECORDS + 1))
             if len(records) > MAX_RECORDS:
                 raise TakeUnsafe(str(self._path), f"a block has more than {MAX_RECORDS} records")
             for record in records:
@@ -257,15 +258,21 @@ def read_attachment_record(record: Record) -> Attachment | None:
     return attachment
 
 
-def _split(body: bytes, trusted: bool) -> Iterator[Record]:
-    """Yield the records of a block as far as their lengths make sense."""
+def _split(body: bytes, trusted: bool, cut_off: bool) -> Iterator[Record]:
+    """Yield the records of a block as far as their lengths make sense.
+
+    Parameters
+    ----------
+    cut_off : the file ends within this block. A kill in the middle of a write does that (Linux ends a
+        write between two pages); it is what "not finished" says, and no damage.
+    """
     position = 0
     while position + RECORD_HEAD_SIZE <= len(body):
         opcode, length = unpack_from(_RECORD, body, position)
         start = position + RECORD_HEAD_SIZE
         if opcode == BLOCK_HEAD or length > len(body) - start:
-            # The chunk that should stand here is lost.
-            yield Record(Opcode.CHUNK, b"", False)
+            if not cut_off:
+                yield Record(Opcode.CHUNK, b"", False)  # stands for the chunk that is lost
             return
         yield Record(opcode, body[start : start + length], trusted)
         position = start + length

@@ -141,6 +141,8 @@ def test_a_take_cut_off_at_any_byte_is_read_up_to_there(original: Path, tmp_path
         kept = assert_nothing_wrong(found, truth)
         assert kept >= before
         assert report.recovered
+        # What was still being written is not damage; the first samples need their channels, from the same block.
+        assert report.damaged == 0 or kept == 0
         before = kept
     assert before == FRAMES * SENSORS
 
