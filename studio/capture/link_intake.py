@@ -10,6 +10,9 @@ from studio.core.sample import Sample, SensorId, SensorInfo
 
 Note = tuple[str, Mapping[str, object]]
 
+QUESTIONS = 10  # times a sensor is asked; a radio loses questions and answers
+QUESTION_EVERY = 1.0  # s; a receiver repeats a command in ten beacons
+
 
 class LinkIntake:
     """One link being read."""
@@ -17,6 +20,7 @@ class LinkIntake:
     def __init__(self, link: Link) -> None:
         self.link = link
         self.infos: dict[SensorId, SensorInfo] = {}
+        self._asked: dict[SensorId, tuple[int, float]] = {}
         self._dialect = open_dialect(link.dialect) if link.dialect else None
         self._tracker = LinkTracker(link.name, self._dialect.traits) if self._dialect else None
 
@@ -33,6 +37,19 @@ class LinkIntake:
             if sample is not None:
                 self.infos[sample.sensor] = self._tracker.infos[sample.sensor]
                 yield sample
+
+    async def ask(self, now: float) -> None:
+        """Ask the sensors for what they have not told yet, a few times; ``now`` is the clock of ``Sample.time``."""
+        if self._dialect is None:
+            return
+        for sensor, info in self.infos.items():
+            asked, last = self._asked.get(sensor, (0, float("-inf")))
+            if asked >= QUESTIONS or now - last < QUESTION_EVERY:
+                continue
+            question = self._dialect.question(info)
+            self._asked[sensor] = (asked + 1, now)
+            if question:
+                await self.link.send(question)
 
     def notes(self) -> list[Note]:
         """Return what happened since the last call: reboots, gaps, two tags with one number…"""

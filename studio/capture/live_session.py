@@ -236,6 +236,7 @@ class LiveSession:
         try:
             async for batch in link.arrivals():
                 self._take_in(intake, batch)
+                await intake.ask(self._newest)
                 await self._give_way(link)
         except LinkError as refusal:
             error = refusal

@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Mapping
 from typing import NamedTuple, Protocol
 
-from studio.core.sample import Quaternion, SensorId, Vector
+from studio.core.sample import Quaternion, SensorId, SensorInfo, Vector
 
 
 class Reading(NamedTuple):
@@ -50,3 +50,6 @@ class Dialect(Protocol):
 
     def feed(self, data: bytes) -> list[Reading]:
         """Take the next bytes and return the readings they complete."""
+
+    def question(self, info: SensorInfo) -> bytes:
+        """Return what asks a sensor for what it has not told yet; empty when there is nothing to ask."""

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from studio.acquisition.dialects import cobs, tag_advert
 from studio.acquisition.dialects.dialect import Reading
-from studio.core.sample import SensorId
+from studio.core.sample import SensorId, SensorInfo
 
 BAUD = 1_000_000  # 8N1; 15 tags at 50 Hz fill 30 % of it
 ADDRESS_SIZE = 6  # bytes of a device address, as on air: least significant first
@@ -192,6 +192,13 @@ class ReceiverFrames:
             else:
                 self._take_word(checked)
         return readings
+
+    def question(self, info: SensorInfo) -> bytes:
+        """Return the order that asks a tag for its offset and gain, empty when it has told."""
+        if info.correction is not None:
+            return b""
+        serial = int(info.sensor.removeprefix("tag:"), 16)
+        return encode_command(serial, tag_advert.Command.REPORT_COEFFICIENTS)
 
     def _take_packet(self, checked: bytes, readings: list[Reading]) -> None:
         _, _, address, loss, _, payload = _PACKET.unpack_from(checked)
