@@ -41,7 +41,7 @@ needs_compiler() {
 
 has_blender_libraries() {
     [ "$(uname)" != Linux ] || "$venv/bin/python" -c 'import ctypes, sys; [ctypes.CDLL(name) for name in sys.argv[1:]]' \
-        libX11.so.6 libXrender.so.1 libXfixes.so.3 libXi.so.6 libxkbcommon.so.0 libSM.so.6 libGL.so.1 libEGL.so.1 >/dev/null 2>&1
+        libX11.so.6 libXrender.so.1 libXfixes.so.3 libXi.so.6 libxkbcommon.so.0 libSM.so.6 libGL.so.1 >/dev/null 2>&1
 }
 
 needs_peers() {
@@ -50,7 +50,7 @@ needs_peers() {
     fi
     if ! has_blender_libraries; then
         install_debian "Blender, which reads our files, needs libraries that are missing" "install those of X11" \
-            libx11-6 libxrender1 libxfixes3 libxi6 libxkbcommon0 libsm6 libgl1 libegl1
+            libx11-6 libxrender1 libxfixes3 libxi6 libxkbcommon0 libsm6 libgl1
     fi
 }
 
