@@ -53,11 +53,18 @@ class LinkIntake:
 
     def notes(self) -> list[Note]:
         """Return what happened since the last call: reboots, gaps, two tags with one number…"""
-        return [] if self._tracker is None else list(self._tracker.take_events())
+        if self._tracker is None or self._dialect is None:
+            return []
+        self._tracker.note_refused(self._dialect.refused)
+        return list(self._tracker.take_events())
 
     def health(self) -> Mapping[SensorId, SensorHealth]:
         """Return the counts of each sensor."""
         return {} if self._tracker is None else self._tracker.health
+
+    def foreign_version(self) -> int | None:
+        """Return the version of the wire protocol the other side announced, None when it is ours or was not told."""
+        return None if self._dialect is None else self._dialect.foreign_version
 
     def malformed(self) -> int:
         """Return how many pieces made no sense."""

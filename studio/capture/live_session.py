@@ -14,6 +14,7 @@ from queue import SimpleQueue
 from typing import NamedTuple, Protocol, runtime_checkable
 
 import studio
+from studio.acquisition.dialects.tag_advert import VERSION as PROTOCOL_VERSION
 from studio.acquisition.driver import Arrival, Cue, Known, Link
 from studio.acquisition.health import SensorHealth
 from studio.capture import events
@@ -21,7 +22,7 @@ from studio.capture.link_intake import LinkIntake
 from studio.capture.live_buffer import LiveBuffer
 from studio.capture.recording import Recording
 from studio.core.alignment import align, require_headings
-from studio.core.errors import AlignmentError, LinkError, NoData, StudioError
+from studio.core.errors import AlignmentError, LinkError, NoData, StudioError, UnsupportedVersion
 from studio.core.live_solver import Solver
 from studio.core.sample import Sample, SensorId, SensorInfo
 from studio.core.take import Mark, Setup
@@ -95,13 +96,16 @@ class LiveSession:
 
         Raises
         ------
-        NoData
+        NoData, UnsupportedVersion
             Nothing usable came within ``patience`` seconds.
         """
         waiting = {asyncio.create_task(e.wait()) for e in (self._settled, self._ended)}
         _, pending = await asyncio.wait(waiting, timeout=patience, return_when=asyncio.FIRST_COMPLETED)
         for task in pending:
             task.cancel()
+        foreign = [v for intake in self._intakes.values() if (v := intake.foreign_version()) is not None]
+        if not self.infos and foreign:
+            raise UnsupportedVersion(foreign[0], PROTOCOL_VERSION)
         if not self.infos:
             raise NoData(", ".join(self._intakes), sum(intake.malformed() for intake in self._intakes.values()))
 
@@ -138,7 +142,7 @@ class LiveSession:
             Nothing was started.
         """
         anchor = Anchor(datetime.now(UTC).isoformat(), time.perf_counter())
-        versions = {"studio": studio.__version__, "protocol": "1", "profile": PROFILE}
+        versions = {"studio": studio.__version__, "protocol": str(PROTOCOL_VERSION), "profile": PROFILE}
         setup = self.setup
 
         def open_file() -> TakeWriter:

@@ -83,6 +83,7 @@ def truth_values(truth: TruthReport) -> dict[str, Any]:
         "joints": {place.value: round(value, 4) for place, value in truth.joint_rms_deg.items()},
         "median_rms_deg": round(truth.median(), 4),
         "worst_rms_deg": round(truth.worst(), 4),
+        "transport_delay_s": round(truth.shift_s, 4),
         "from_s": truth.from_s,
         "to_s": truth.to_s,
     }

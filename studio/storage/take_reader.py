@@ -108,7 +108,7 @@ def read_take(path: Path) -> tuple[Take, ReadReport]:
 def read_raw(path: Path) -> Iterator[tuple[str, float, bytes]]:
     """Yield (link, s of take time, bytes) as the reads of each link gave them."""
     with _opened(path) as (reader, file):
-        zero = _zero(file)
+        zero = take_zero(file)
         for messages in reader.messages():
             channel = reader.channels.get(messages.channel)
             if channel is None or not channel.topic.startswith(RAW_TOPIC):
@@ -142,6 +142,19 @@ def read_attachment(path: Path, name: str) -> bytes | None:
     if not expected or set(parts) != set(range(1, expected + 1)):
         return None
     return b"".join(parts[part] for part in sorted(parts))
+
+
+def take_zero(path: Path) -> float:
+    """Return take time 0 on the clock of ``Sample.time`` while it was recorded, s."""
+    with _opened(path) as (reader, _):
+        for _ in reader.messages():
+            for channel in reader.channels.values():
+                if channel.topic.startswith(IMU_TOPIC):
+                    try:
+                        return from_json(channel.metadata.get("sensor", ""), SensorRecord).zero_s
+                    except NOT_JSON:
+                        continue
+    return 0.0
 
 
 def sample_rows(messages: Messages) -> NDArray[np.void] | None:
@@ -298,18 +311,6 @@ def _started(anchor: Anchor, zero: float) -> str:
         return (datetime.fromisoformat(anchor.utc) + timedelta(seconds=elapsed)).isoformat()
     except (ValueError, OverflowError):
         return ""
-
-
-def _zero(file: Path) -> float:
-    with _opened(file) as (reader, _):
-        for _ in reader.messages():
-            for channel in reader.channels.values():
-                if channel.topic.startswith(IMU_TOPIC):
-                    try:
-                        return from_json(channel.metadata.get("sensor", ""), SensorRecord).zero_s
-                    except NOT_JSON:
-                        continue
-    return 0.0
 
 
 def _bodies(messages: Messages) -> Iterator[bytes]:

@@ -47,6 +47,10 @@ class Dialect(Protocol):
     traits: Traits
     malformed: Counter[str]
     """How many pieces were refused, by reason. Refusing is never an exception."""
+    refused: Counter[SensorId]
+    """Pieces of a known sensor that made no sense, by sensor."""
+    foreign_version: int | None
+    """The version of our protocol that the other side announced, when it is not the one we speak."""
 
     def feed(self, data: bytes) -> list[Reading]:
         """Take the next bytes and return the readings they complete."""

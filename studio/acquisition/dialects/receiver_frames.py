@@ -164,6 +164,8 @@ class ReceiverFrames:
         """Pieces refused, by reason."""
         self.refused: Counter[SensorId] = Counter()
         """Intact frames of a known tag whose payload made no sense, by tag."""
+        self.foreign_version: int | None = None
+        """Of the receiver, when it is not ours."""
         self.hello: Hello | None = None
         """The last one."""
         self.status: Status | None = None
@@ -236,6 +238,7 @@ class ReceiverFrames:
             self.hello = Hello(*_HELLO.unpack_from(checked)[1:])
             if self.hello.version != tag_advert.VERSION:
                 self.malformed["version"] += 1
+                self.foreign_version = self.hello.version
         else:
             _, clock_us, received, crc_errors, dropped, slots = _STATUS.unpack_from(checked)
             self.status = Status(clock_us, received, crc_errors, dropped, tuple(slots))
