@@ -36,6 +36,8 @@ PRE_ROLL = 2.0  # s kept from before R
 SETTLED = 0.5  # s without a new sensor: all have been heard (25 frames)
 PATIENCE = 10.0  # s of waiting for the first sample; an Arduino that resets on opening needs up to 8 s
 HISTORY = 120.0  # s of attitudes kept for aligning
+HEALTH_EVERY = 10.0  # s between two notes of counts and clocks in the take
+HEALTH_KEPT = ("received", "lost", "malformed", "duplicates", "late", "rate", "jitter", "offset", "skew", "rssi")
 BUSY_QUEUE = 0.5  # of the take-writer's queue; a source without a pace waits then
 
 
@@ -72,6 +74,7 @@ class LiveSession:
         self._pre_roll_s = pre_roll
         self._newest_sensor = float("inf")
         self._newest = float("-inf")
+        self._health_noted = float("-inf")
         self._settled = asyncio.Event()
         self._ended = asyncio.Event()
 
@@ -180,9 +183,8 @@ class LiveSession:
         recording, self.recording = self.recording, None
         if recording is None:
             raise ValueError("nothing is being recorded")
+        self._note_health(recording)
         for intake in self._intakes.values():
-            for sensor, health in intake.health().items():
-                recording.writer.event("clock", {"sensor": sensor, "skew_ppm": health.skew}, self._newest)
             if isinstance(intake.link, KnowsTruth):
                 recording.writer.attach("truth", "application/octet-stream", intake.link.truth_attachment())
         failure: StudioError | None = None
@@ -266,10 +268,21 @@ class LiveSession:
                 self._keep_raw(intake.link.name, piece)
             for sample in intake.samples(piece):
                 self._take_sample(intake, sample)
+        if self.recording is not None and self._newest - self._health_noted >= HEALTH_EVERY:
+            self._note_health(self.recording)
         for kind, facts in intake.notes():
             self.events.put(events.LinkNoted(kind, facts))
             if self.recording is not None:
                 self.recording.note(kind, facts, self._newest)
+
+    def _note_health(self, recording: Recording) -> None:
+        """Keep the counts and clocks of all sensors; what the samples alone do not tell."""
+        self._health_noted = self._newest
+        for intake in self._intakes.values():
+            for sensor, health in intake.health().items():
+                told = health.snapshot(self._newest)
+                facts = {name: getattr(told, name) for name in HEALTH_KEPT}
+                recording.writer.event("health", {"sensor": sensor, **facts}, self._newest)
 
     def _take_sample(self, intake: LinkIntake, sample: Sample) -> None:
         info = intake.infos[sample.sensor]
