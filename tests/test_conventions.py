@@ -5,6 +5,7 @@ import importlib
 import re
 import subprocess
 import sys
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -16,8 +17,12 @@ ROOT = Path(__file__).resolve().parents[1]
 
 LONGEST_MODULE = 600  # lines; 400 is the aim, and what passes it is named at the end of each test run
 JUNK_DRAWERS = {"utils", "util", "helpers", "helper", "common", "base", "manager", "handler", "misc"}
-OUTERMOST = {"studio/__main__.py", "studio/capture/runtime.py", "studio/capture/worker_process.py"}
-"""Where any failure ends in the crash report: the only places that may catch ``Exception``."""
+OUTERMOST = {
+    "studio/cli/__init__.py": 1,  # ends in the crash report
+    "studio/capture/worker.py": 1,  # the top of a thread: the future raises it again
+    "studio/storage/take_writer.py": 1,  # the same
+}
+"""How often each module catches ``Exception``: only where nothing of ours is left above."""
 
 TEXTS = {".py", ".md", ".toml", ".txt", ".json", ".c", ".h", ".ino", ".sh", ".bat", ".mjs", ".svg", ".cfg", ".yml"}
 SOURCES = {".py", ".c", ".h", ".ino", ".sh", ".bat", ".mjs"}
@@ -75,14 +80,14 @@ def is_broad(handler: ast.ExceptHandler) -> bool:
 
 
 def test_only_the_outermost_places_catch_everything():
-    broad = {
+    broad = Counter(
         name(path)
         for path in STUDIO
         for node in ast.walk(TREES[path])
         if isinstance(node, ast.ExceptHandler) and is_broad(node)
-    }
+    )
 
-    assert broad <= OUTERMOST
+    assert dict(broad) == OUTERMOST
 
 
 def groups(kind: type[StudioError] = StudioError) -> Iterator[str]:
