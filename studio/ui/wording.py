@@ -25,7 +25,7 @@ class Message(NamedTuple):
     """One message, each part a sentence or more, or empty."""
 
     id: str
-    """``area.name``: what the manual and the log call it."""
+    """``area.name``: what the manual calls it."""
     what: str
     why: str
     do: str
