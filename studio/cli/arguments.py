@@ -71,7 +71,7 @@ def _import(add: AddVerb) -> None:
     verb.add_argument("--map", type=Path, metavar="FILE", help="what the columns of a table mean (csv)")
     verb.add_argument("--library", type=Path, required=True, metavar="DIR")
     verb.add_argument("--person", default="", metavar="CODE")
-    verb.set_defaults(run=verbs.import_recording)
+    verb.set_defaults(run=verbs.import_recording, usage_error=verb.error)
 
 
 def _inspect(add: AddVerb) -> None:

@@ -66,6 +66,8 @@ def record(arguments: Namespace) -> None:
 
 def import_recording(arguments: Namespace) -> None:
     """Import a foreign recording."""
+    if arguments.map is not None and arguments.format == "xio":
+        arguments.usage_error("--map explains tables; x-io recordings explain themselves")
     folder = library.import_into(arguments.library, arguments.paths, arguments.format, arguments.map, arguments.person)
     print(folder)
 
