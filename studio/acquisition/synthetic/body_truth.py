@@ -125,7 +125,8 @@ class Performer:
             share, walking, distance, pelvis = self._gait.at(times - SCRIPT_BEGINS)
             angles += walking
             upright = segments_from_angles(angles)
-            hips[:, 1:] += share[:, None] * (pelvis - hips[:, 1:])
+            # The legs shorten with the square of their swing.
+            hips[:, 1:] += np.stack([share, share * share], axis=-1) * (pelvis - hips[:, 1:])
             heading, way = course(distance)
             turn = rotation.about(2, heading)
             upright = rotation.multiply(turn[:, None], upright)
