@@ -24,23 +24,25 @@ SWAY_TIME = 0.8  # s, correlation time (biomechanics-and-formats, section 3)
 SWAY_HIGHEST = 1.0  # Hz; muscles and mass leave nothing above it
 SWAY_WAVES = 12
 
-# degrees of flexion at which soft tissue has moved the tag by its full angle: everyday ranges of the proximal joints
+# Degrees of flexion at which soft tissue has moved the tag by its full 2 degrees: the ends of the joints' ranges
+# (AAOS: shoulder 180, elbow 150, hip 120, knee 135, ankle 50, trunk 80, neck 60, wrist 80). It grows in phase with
+# the joint and is never more; the pelvis has no joint above it and takes the hips' range.
 REFERENCE_EXCURSION: dict[Place, float] = {
-    Place.HEAD: 40.0,
-    Place.CHEST: 45.0,
-    Place.LEFT_UPPER_ARM: 60.0,
-    Place.RIGHT_UPPER_ARM: 60.0,
-    Place.LEFT_FOREARM: 90.0,
-    Place.RIGHT_FOREARM: 90.0,
-    Place.LEFT_HAND: 50.0,
-    Place.RIGHT_HAND: 50.0,
-    Place.PELVIS: 45.0,
-    Place.LEFT_THIGH: 45.0,
-    Place.RIGHT_THIGH: 45.0,
-    Place.LEFT_SHANK: 70.0,
-    Place.RIGHT_SHANK: 70.0,
-    Place.LEFT_FOOT: 25.0,
-    Place.RIGHT_FOOT: 25.0,
+    Place.HEAD: 60.0,
+    Place.CHEST: 80.0,
+    Place.LEFT_UPPER_ARM: 180.0,
+    Place.RIGHT_UPPER_ARM: 180.0,
+    Place.LEFT_FOREARM: 150.0,
+    Place.RIGHT_FOREARM: 150.0,
+    Place.LEFT_HAND: 80.0,
+    Place.RIGHT_HAND: 80.0,
+    Place.PELVIS: 120.0,
+    Place.LEFT_THIGH: 120.0,
+    Place.RIGHT_THIGH: 120.0,
+    Place.LEFT_SHANK: 135.0,
+    Place.RIGHT_SHANK: 135.0,
+    Place.LEFT_FOOT: 50.0,
+    Place.RIGHT_FOOT: 50.0,
 }
 _EXCURSIONS = np.deg2rad([REFERENCE_EXCURSION[place] for place in PLACES])
 

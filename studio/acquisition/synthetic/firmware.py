@@ -7,15 +7,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from studio.acquisition.dialects.receiver_frames import TagCommand
-from studio.acquisition.dialects.tag_advert import ALL_TAGS, Command, calibration_crc
+from studio.acquisition.dialects.tag_advert import ALL_TAGS, GAIN_LIMIT, OFFSET_LIMIT, Command, calibration_crc
 from studio.acquisition.synthetic.tag_model import TICK, Readings, vector
 from studio.core import rotation
 from studio.core.sample import NO_CORRECTION, Correction
 
 Array = NDArray[np.float64]
 
-STILL_RATE = np.deg2rad(0.3)  # rad/s, SD over one block: six times the chip's noise
-STILL_FORCE = 0.15  # m/s², SD over one block: three to four times the chip's noise
+STILL_RATE = np.deg2rad(0.15)  # rad/s, SD over a block: three times the noise, less than a standing body sways
+STILL_FORCE = 0.12  # m/s², SD over one block: three times the chip's noise
 
 
 @dataclass(slots=True)
@@ -41,8 +41,8 @@ class TagState:
 
     @property
     def is_calibrated(self) -> bool:
-        """Tell whether gain or offset are its own."""
-        return self.correction != NO_CORRECTION
+        """Tell whether it has a gain of its own."""
+        return self.correction.gain != NO_CORRECTION.gain
 
     @property
     def crc(self) -> int:
@@ -148,7 +148,8 @@ class Firmware:
 def _set_coefficient(tag: TagState, argument: bytes) -> None:
     index, value = struct.unpack_from("<Bf", argument)
     rows = [list(tag.correction.offset), *(list(row) for row in tag.correction.gain)]
-    if index < 12 and np.isfinite(value):
+    limit = OFFSET_LIMIT if index < 3 else GAIN_LIMIT
+    if index < 12 and abs(value) <= limit:  # NaN fails too
         rows[index // 3][index % 3] = value
         offset, *gain = (vector(np.array(row)) for row in rows)
         tag.correction = Correction(offset, (gain[0], gain[1], gain[2]))

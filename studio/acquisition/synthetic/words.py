@@ -60,9 +60,9 @@ def read_words(words: str) -> SuitOptions:
         options = SuitOptions(script=_script(script or "walk"))
         for option in filter(None, rest.split("&")):
             name, _, value = option.partition("=")
-            if name not in _OPTIONS:
+            if name not in OPTIONS:
                 raise _Refused(f"there is no option {name or option}")
-            options = replace(options, **_OPTIONS[name](value))
+            options = replace(options, **OPTIONS[name](value))
         _check(options)
     except _Refused as refused:
         raise SourceUnreadable(source, str(refused)) from refused
@@ -141,7 +141,7 @@ def _speed(value: str) -> dict[str, Any]:
     return {"speed": math.inf if value == "max" else _number(value, 0.01, 1000.0, "speed")}
 
 
-_OPTIONS: dict[str, Callable[[str], dict[str, Any]]] = {
+OPTIONS: dict[str, Callable[[str], dict[str, Any]]] = {
     "tags": _tags,
     "loss": lambda value: {"loss": _number(value, 0.0, MOST_LOSS, "loss")},
     "burst": lambda value: {"burst": _number(value, 1.0, 1000.0, "burst")},
