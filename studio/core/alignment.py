@@ -24,7 +24,8 @@ from studio.core.strapping import STRAP_SIGMA, strap_rule
 from studio.core.take import Alignment, Assignment, HeadingSource, LimbAlignment, Mark, Mounting
 from studio.core.track import SensorTrack
 
-STILLEST = 1.0  # s of the hold that are averaged
+STILLEST = 1.0  # s of the hold that decide
+SWAY_RANGE = math.radians(1.5)  # around the stillest second; a standing person sways with an SD of 0.5°
 LARGEST_DEVIATION = math.radians(3.0)  # from the mean during that second
 LARGEST_SPEED = math.radians(10.0)  # rad/s, root mean square during that second
 SMALLEST_BOW = math.radians(20.0)  # of tilt between the holds
@@ -145,7 +146,8 @@ def hold_all(
             rows = _nearest(track, mark.time)
         if len(rows) == 0 or len(set(track.group[rows].tolist())) != 1:
             continue
-        holds[place] = _hold(track, rows)
+        whole = track.rows(mark.time, max(mark.end, mark.time))
+        holds[place] = _hold(track, rows, whole[track.group[whole] == track.group[rows[0]]])
     if required and not holds:
         raise PoseTooShort(mark.label, mark.time, mark.end, take_s)
     return holds
@@ -174,18 +176,23 @@ def stillest_second(tracks: Sequence[SensorTrack], mark: Mark) -> float:
     return float(starts[int(np.argmin(cost))])
 
 
-def _hold(track: SensorTrack, rows: NDArray[np.intp]) -> Hold:
+def _hold(track: SensorTrack, still: NDArray[np.intp], whole: NDArray[np.intp]) -> Hold:
+    """Return one sensor's hold: the stillest second decides, the rest of the hold that agrees with it is averaged in."""
+    centre = rotation.mean(track.attitude[still])
+    deviation = rotation.angle_between(centre, track.attitude[still])
+    # Sway wanders within a second; three seconds of it average to half (biomechanics-and-formats §3).
+    agreeing = whole[rotation.angle_between(centre, track.attitude[whole]) <= SWAY_RANGE]
+    rows = agreeing if len(agreeing) > len(still) else still
     attitude = rotation.mean(track.attitude[rows])
-    deviation = rotation.angle_between(attitude, track.attitude[rows])
     device = track.device[rows]
     known = np.isfinite(device).all(axis=1)
     return Hold(
         attitude=attitude,
         device=rotation.mean(device[known]) if known.any() else np.full(4, np.nan),
-        spread=float(np.sqrt(np.mean(deviation**2))),
+        spread=float(np.sqrt(np.mean(rotation.angle_between(attitude, track.attitude[rows]) ** 2))),
         largest=float(deviation.max()),
-        speed=float(np.sqrt(np.mean(track.speed[rows] ** 2))) if len(rows) > 1 else 0.0,
-        group=int(track.group[rows[0]]),
+        speed=float(np.sqrt(np.mean(track.speed[still] ** 2))) if len(still) > 1 else 0.0,
+        group=int(track.group[still[0]]),
     )
 
 

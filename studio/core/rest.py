@@ -12,6 +12,7 @@ RATE_SPREAD_TABLE = math.radians(0.3)  # rad/s, SD of block means: a tag on a ta
 RATE_SPREAD_WORN = math.radians(3.0)  # rad/s: a standing person sways at 0.5 to 1.5 °/s
 ACCELERATION_SPREAD = 0.4  # m/s², SD of block means; turning by 2.5° changes gravity by as much
 RESOLUTION = math.radians(0.005)  # rad/s; a mean of 0.003° quaternions over a few seconds cannot be surer
+SWAY = 3.0  # simulated sway (0.3-2 s of correlation, 2 to 10 s of standing): two sigma then cover 95 %
 LARGEST_OFFSET = math.radians(25.0)  # rad/s; data sheet of the MPU-6050: ±20 °/s, and warmth on top
 
 
@@ -26,7 +27,7 @@ class Rest:
     offset: NDArray[np.float64]
     """(3,), rad/s, sensor axes: mean reading."""
     sigma: NDArray[np.float64]
-    """(3,), rad/s, standard uncertainty of the mean (type A over block means: sway counts as scatter)."""
+    """(3,), rad/s, standard uncertainty of the mean: type A over block means; worn, sway besides."""
 
 
 def find_rest(
@@ -55,11 +56,23 @@ def find_rest(
         inside = means[start : stop + WINDOW - 1]
         offset = inside.mean(axis=0)
         sigma = inside.std(axis=0, ddof=1) / math.sqrt(len(inside))
+        if spread > RATE_SPREAD_TABLE:
+            sigma = np.hypot(sigma, _sway_sigma(inside - offset))
         if np.abs(offset).max() > LARGEST_OFFSET:
             continue
         if best is None or sigma.max() < best.sigma.max():
             best = Rest(start * size, (stop + WINDOW - 1) * size, offset, sigma)
     return best
+
+
+def _sway_sigma(deviation: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return what swaying about a place adds to the uncertainty of a mean rate, (3,), rad/s.
+
+    Whoever stands comes back to where they were, so that the mean rate is off by the way between first and
+    last place over the time; neighbouring block means are not independent, and type A alone would be too sure.
+    """
+    angle = np.cumsum(deviation, axis=0) * BLOCK
+    return np.asarray(SWAY * angle.std(axis=0) / (len(deviation) * BLOCK))
 
 
 def _fill_gaps(blocks: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -14,6 +14,7 @@ from studio.core.sample import NO_CORRECTION, Correction, Flag, SensorId, Sensor
 from studio.core.take import Calibration, Take
 
 RAW_OFFSET_SIGMA = math.radians(20.0) / math.sqrt(3.0)  # rad/s; MPU-6050 data sheet: ±20 °/s, uniform
+FRESH_OFFSET_SIGMA = math.radians(0.03)  # rad/s; measured at rest since power-on (0.001), warming up a little since
 STORED_OFFSET_SIGMA = math.radians(0.05)  # rad/s; a stored offset after some minutes of warming up
 DEVICE_OFFSET_SIGMA = math.radians(1.0)  # rad/s; a device with a filter of its own tracks its offset
 CARRY_AFTER = 1.0  # s into a new run at which its heading is compared: its tilt has settled by then
@@ -92,6 +93,8 @@ def prior_offset_sigma(info: SensorInfo, flags: int, calibration: Calibration | 
     """Return how well the offset is known before this take is looked at, rad/s."""
     if calibration is not None and math.isfinite(max(calibration.offset_sigma)):
         return max(calibration.offset_sigma)
+    if flags & Flag.OFFSET_OK:
+        return FRESH_OFFSET_SIGMA
     if calibration is not None or (info.correction not in (None, NO_CORRECTION)) or flags & Flag.CALIBRATED:
         return STORED_OFFSET_SIGMA
     if info.orientation == "world":

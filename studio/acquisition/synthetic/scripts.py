@@ -17,14 +17,14 @@ BOW = posture(
         "trunk": (22, 0, 0),
         "neck": (5, 0, 0),
         "hip": (62, 0, 0),
-        "knee": (62, 0, 0),
+        "knee": (76, 0, 0),
         "ankle": (-1, 0, 0),
         "shoulder": (102, 0, 0),
         "elbow": (20, 0, 0),
         "wrist": (5, 0, 0),
     }
 )
-"""Trunk 52 degrees forward, head 57, thighs 32 back to front, shanks 30 and feet 31 forward (heels lifted), arms 50 to
+"""Trunk 52 degrees forward, head 57, thighs 32 back to front, shanks 44 and feet 45 forward (heels lifted), arms 50 to
 75 in front: every segment tilts by 25 degrees or more (contracts, section 3)."""
 
 T_POSE = posture({"shoulder": (0, -90, 0)})

@@ -27,7 +27,7 @@ class SuitOptions:
     burst: float = 0.0
     """Frames, mean length of the outages; 0: each packet is lost or not by itself."""
     seed: int = 1
-    calibrated: bool = True
+    calibrated: bool = False
     speed: float = 1.0
     """Times real time; infinite: as fast as it is read."""
     skew: float = 0.0
