@@ -98,7 +98,7 @@ def judge(motion: Motion, truth: Truth, zero: float) -> TruthReport:
 def _errors(
     motion: Motion, truth: Truth, joint: tuple[Place, Place], time: NDArray[np.float64], rows: slice
 ) -> NDArray[np.float64]:
-    """Return the angle between found and true rotation of a joint, rad, at the frames where both sensors are measured."""
+    """Return the angle between found and true rotation of a joint, rad, where both sensors are measured."""
     parent, child = joint
     known = motion.measured[parent][rows] & motion.measured[child][rows]
     found = motion.parent_from_child(SEGMENT_OF[parent], SEGMENT_OF[child])[rows]

@@ -20,6 +20,7 @@ _HEADINGS = (
 
 STAGES = {"read": "reading", "solve": "solving", "write": "writing"}
 
+
 def inspection(take: Take, report: ReadReport, truth: TruthReport | None) -> dict[str, Any]:
     """Return what ``inspect --json`` prints."""
     content: dict[str, Any] = {

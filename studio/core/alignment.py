@@ -177,7 +177,7 @@ def stillest_second(tracks: Sequence[SensorTrack], mark: Mark) -> float:
 
 
 def _hold(track: SensorTrack, still: NDArray[np.intp], whole: NDArray[np.intp]) -> Hold:
-    """Return one sensor's hold: the stillest second decides, the rest of the hold that agrees with it is averaged in."""
+    """Return one sensor's hold: the stillest second decides, and what agrees with it is averaged in."""
     centre = rotation.mean(track.attitude[still])
     deviation = rotation.angle_between(centre, track.attitude[still])
     # Sway wanders within a second; three seconds of it average to half (biomechanics-and-formats §3).

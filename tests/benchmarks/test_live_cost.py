@@ -27,8 +27,7 @@ def test_live_cost_of_fifteen_tags(tmp_path, rate):
         request = RecordRequest(f"serial:{port}", SECONDS, tmp_path, "P014", "cost")
 
         async def measured():
-            saved = await record(request, session, asyncio.Event())
-            return saved
+            return await record(request, session, asyncio.Event())
 
         wall, used = time.perf_counter(), time.process_time()
         saved = asyncio.run(measured())

@@ -69,7 +69,7 @@ def test_what_cannot_be_done_is_one_sentence_and_1(tmp_path, capsys, take):
     refused(capsys, "record", "--source", "synthetic", "--library", tmp_path, "--person", "Jane Doe")
     refused(capsys, "import", tmp_path / "nothing here", "--library", tmp_path)
     refused(capsys, "export", take, "--format", "bvh", "-o", tmp_path / "no" / "such" / "folder.bvh")
-    refused(capsys, "export", take, "--format", "bvh", "--calibration", tmp_path / "none.json", "-o", tmp_path / "x.bvh")
+    refused(capsys, "solve", take, "--calibration", tmp_path / "none.json")
     refused(capsys, "solve", take, "--pose", "n=50..60")
     refused(capsys, "inspect", take, "--truth")
 
@@ -123,7 +123,8 @@ def test_a_take_can_be_solved_with_another_calibration(take, wrong_gain, choice,
     words = ["export", str(take), "--format", "csv", "--table", "orientations", "--attitude", "gyro", "-o"]
 
     assert main([*words, str(plain)]) == 0
-    assert main([*words, str(other), "--calibration", "latest" if choice == "latest" else str(tmp_path / "half.json")]) == 0
+    named = "latest" if choice == "latest" else str(tmp_path / "half.json")
+    assert main([*words, str(other), "--calibration", named]) == 0
 
     assert plain.read_text() != other.read_text()
 

@@ -49,6 +49,7 @@ def test_a_bow_tells_forwards_from_backwards():
 
     for seen, lifting in ((forwards, False), (lifted, True)):
         sensor_from_segment, _ = from_bow(up, seen, up, lifting)
+        assert sensor_from_segment is not None
         assert rotation.angle_between(sensor_from_segment, rotation.IDENTITY) < 1e-7
 
 

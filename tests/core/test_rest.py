@@ -4,13 +4,19 @@ import numpy as np
 import pytest
 
 from studio.core.frames import GRAVITY
-from studio.core.rest import RATE_SPREAD_TABLE, RATE_SPREAD_WORN, combine, find_rest
+from studio.core.rest import RATE_SPREAD_TABLE, RATE_SPREAD_WORN, Rest, combine, find_rest
 
 FRAME = 0.02
 OFFSET = np.radians([12.0, -7.0, 19.0])
 
 
 NOISE = np.radians(0.2)  # rad/s; quantised quaternions 20 ms apart
+
+
+def found(rate, force, spread=RATE_SPREAD_TABLE) -> Rest:
+    rest = find_rest(rate, force, FRAME, spread)
+    assert rest is not None
+    return rest
 
 
 def lying(seconds, rng):
@@ -32,7 +38,7 @@ def test_the_offset_of_a_tag_on_the_table_is_found_between_two_movements():
     parts = [waving(3, rng), lying(8, rng), waving(3, rng)]
     rate, force = (np.concatenate(column) for column in zip(*parts, strict=True))
 
-    rest = find_rest(rate, force, FRAME)
+    rest = found(rate, force)
 
     assert rest.first * FRAME == pytest.approx(3, abs=0.3)
     assert rest.last * FRAME == pytest.approx(11, abs=0.3)
@@ -42,7 +48,7 @@ def test_the_offset_of_a_tag_on_the_table_is_found_between_two_movements():
 def test_the_stated_uncertainty_covers_the_error_as_often_as_it_says():
     errors = []
     for seed in range(200):
-        rest = find_rest(*lying(6, np.random.default_rng(seed)), FRAME)
+        rest = found(*lying(6, np.random.default_rng(seed)))
         errors.append((rest.offset - OFFSET) / rest.sigma)
 
     covered = np.mean(np.abs(np.array(errors)) < 2)
@@ -56,7 +62,7 @@ def test_a_person_standing_still_is_at_rest_only_when_that_is_asked_for():
     rate = rate + np.radians(1.0) * np.sin(2 * np.pi * 0.4 * t)[:, None]
 
     assert find_rest(rate, force, FRAME, RATE_SPREAD_TABLE) is None
-    worn = find_rest(rate, force, FRAME, RATE_SPREAD_WORN)
+    worn = found(rate, force, RATE_SPREAD_WORN)
     assert worn.sigma.max() > np.radians(0.1)  # sway is part of the uncertainty
 
 
@@ -70,7 +76,9 @@ def test_turning_steadily_is_not_rest():
 
 
 def test_less_than_two_seconds_are_too_few():
-    assert find_rest(*lying(1.5, np.random.default_rng(2)), FRAME) is None
+    rate, force = lying(1.5, np.random.default_rng(2))
+
+    assert find_rest(rate, force, FRAME) is None
 
 
 def test_more_than_the_data_sheet_allows_is_turning_and_not_offset():

@@ -29,7 +29,7 @@ def sensor_of(place: Place) -> SensorId:
 def bow_angle(place: Place) -> float:
     """How far each segment turns about its right axis in the bow, rad: forwards is negative, lifting positive."""
     lifted = any(place.value.endswith(limb) for limb in LIFTED)
-    return np.radians(50.0 if lifted else -35.0)
+    return float(np.radians(50.0 if lifted else -35.0))
 
 
 def procedure(place: Place, time: NDArray[np.float64], walking: float = 30.0) -> NDArray[np.float64]:

@@ -6,6 +6,7 @@ and then sends in real time what ``synthetic:WORDS`` says. It answers commands a
 
 import asyncio
 import os
+import signal
 import sys
 import tty
 
@@ -17,11 +18,12 @@ async def send(words: str, seconds: float, master: int) -> None:
     link = await SyntheticDriver().open(words)
     loop = asyncio.get_running_loop()
     greeted = asyncio.Event()
+    answers: set[asyncio.Task[None]] = set()
 
     def hear() -> None:
         heard = os.read(master, 4096)
         greeted.set()
-        loop.create_task(link.send(heard))
+        answers.add(loop.create_task(link.send(heard)))
 
     loop.add_reader(master, hear)
     await asyncio.wait_for(greeted.wait(), 30)
@@ -45,7 +47,7 @@ def main() -> None:
     tty.setraw(slave)
     print(os.ttyname(slave), flush=True)
     asyncio.run(send(words, seconds, master))
-    sys.stdin.read()  # the port stays until the other side has read everything and says so
+    signal.pause()  # the port stays until the other side has read everything and ends this process
 
 
 if __name__ == "__main__":

@@ -22,17 +22,18 @@ def suit(words, seconds):
     """Yield the port of a suit that runs in a process of its own."""
     command = [sys.executable, "-m", "tests.journeys.pty_suit", words, str(seconds)]
     with subprocess.Popen(command, cwd=ROOT, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
         try:
             yield process.stdout.readline().strip()
         finally:
-            process.stdin.close()
-            process.wait(30)
+            process.kill()  # it may be writing into a port that nobody reads any more
 
 
 @pytest.mark.parametrize(("rate", "frames"), [(50, 0.02), (100, 0.01)])
 def test_fifteen_tags_are_kept_without_a_single_loss(tmp_path, capsys, rate, frames):
     with suit(f"walk?seed=3&rate={rate}&speed=1", 8) as port:
-        code = main(["record", "--source", f"serial:{port}", "--seconds", "4", "--library", str(tmp_path), "--person", "P014"])
+        words = ["--source", f"serial:{port}", "--seconds", "4", "--library", str(tmp_path), "--person", "P014"]
+        code = main(["record", *words])
     printed = capsys.readouterr()
     assert code == 0, printed.err
 
@@ -44,6 +45,6 @@ def test_fifteen_tags_are_kept_without_a_single_loss(tmp_path, capsys, rate, fra
     assert [account.lost for account in accounts] == [0] * 15
     assert {account.place for account in accounts} == {place.value for place in PLACES}  # by the tags' numbers
     assert all(stream.info.frame_s == pytest.approx(frames) for stream in take.streams)
-    assert all(len(stream) == pytest.approx(4 * rate, abs=2) for stream in take.streams)
+    assert all(len(stream) == pytest.approx(4 * rate, abs=8) for stream in take.streams)  # the first come in a heap
     assert all(stream.info.correction is not None for stream in take.streams)  # the tags were asked
     assert sum(len(data) for _, _, data in read_raw(Path(printed.out.strip()))) > 30 * 4 * rate * 15

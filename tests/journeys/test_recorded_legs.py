@@ -62,7 +62,9 @@ def knee_peaks(folder, attitude, method="offline"):
     ]
 
 
-@pytest.mark.parametrize(("attitude", "method"), [("vqf", "offline"), ("gyro", "offline"), ("device", "offline"), ("vqf", "live")])
+@pytest.mark.parametrize(
+    ("attitude", "method"), [("vqf", "offline"), ("gyro", "offline"), ("device", "offline"), ("vqf", "live")]
+)
 def test_the_knees_bend_as_far_as_the_devices_own_filter_says(take, attitude, method):
     left, right = knee_peaks(take, attitude, method)
 

@@ -26,6 +26,7 @@ def test_a_motion_comes_back_as_it_was(stored):
     save_motion(folder, key, motion)
     again = load_motion(folder, key)
 
+    assert again is not None
     for name in ("time", "world_from_segment", "hips"):
         np.testing.assert_array_equal(getattr(again, name), getattr(motion, name))
     assert again.alignment == motion.alignment
