@@ -2,7 +2,7 @@
 
 Without a magnetometer every sensor's attitude has its own unknown heading, and one held pose gives three
 equations for four unknowns. The fourth fact is taken in this order, and stored: a second hold (a bow, or
-N-pose after T-pose for the arms), a common heading sent by the source, the strap rule. Paper 002's bias
+another reference pose: T-pose tells of the arms, sitting of the thighs), a common heading sent by the source, the strap rule. Paper 002's bias
 quaternion ``Q_B = Q_IMU^-1 Q_R`` is the case in which the fourth fact is "the heading is already right";
 its two-sided form is ``world_from_segment = heading * world_from_sensor * sensor_from_segment``.
 """
@@ -15,13 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from studio.core import rotation
-from studio.core.body import SEGMENT_OF, Place, reference_pose
+from studio.core.body import REFERENCE_POSES, SEGMENT_OF, Place, reference_pose
 from studio.core.errors import HeadingsUnknown, MovedDuringHold, PoseMissing, PoseTooShort
 from studio.core.facing import facing_from_hinges
 from studio.core.frames import UP
 from studio.core.sample import SensorId
 from studio.core.strapping import STRAP_SIGMA, strap_rule
-from studio.core.take import Alignment, Assignment, HeadingSource, LimbAlignment, Mark, Mounting
+from studio.core.take import Alignment, Assignment, HeadingSource, LimbAlignment, Mark, Mounting, PoseName
 from studio.core.track import SensorTrack
 
 STILLEST = 1.0  # s of the hold that decide
@@ -48,6 +48,8 @@ _LIFTED = frozenset(
         Place.RIGHT_THIGH,
     }
 )
+
+_POSE_NAMES: dict[str, PoseName] = {"n": "n", "t": "t", "sit": "sit"}
 
 Tracks = Mapping[SensorId, SensorTrack]
 
@@ -82,7 +84,7 @@ def align(
     Parameters
     ----------
     poses : sequence of Mark
-        Kind ``pose``, labels ``n``, ``t``, ``bow``; the first ``n`` (else ``t``) is the reference.
+        Kind ``pose``, labels ``n``, ``t``, ``sit``, ``bow``; the first ``n`` (else ``t``, else ``sit``) is the reference.
     take_s : float, s
         Length of the take, for the messages.
 
@@ -94,6 +96,7 @@ def align(
     reference = reference_mark(poses)
     if reference is None:
         raise PoseMissing(take_s)
+    pose = _POSE_NAMES[reference.label]
     worn = {place: tracks[sensor] for place, sensor in assignment.sensors.items() if sensor in tracks}
     first = hold_all(worn, reference, take_s)
     moved = {p: h for p, h in first.items() if h.largest > LARGEST_DEVIATION or h.speed > LARGEST_SPEED}
@@ -102,7 +105,7 @@ def align(
         raise MovedDuringHold(reference.label, tuple(place.value for place in moved), degrees)
     others = {
         label: hold_all(worn, mark, take_s, required=False)
-        for label in ("bow", "n", "t")
+        for label in ("bow", *REFERENCE_POSES)
         if (mark := _last(poses, label, reference)) is not None
     }
     facing = _common_facing(worn, first, reference)
@@ -110,7 +113,7 @@ def align(
     for place, hold in first.items():
         elsewhere = {label: holds[place] for label, holds in others.items() if place in holds}
         limbs[place] = _align_limb(place, hold, reference.label, elsewhere, facing.get(place), mounting)
-    return Alignment("t" if reference.label == "t" else "n", reference.time, reference.end, limbs)
+    return Alignment(pose, reference.time, reference.end, limbs)
 
 
 def require_headings(alignment: Alignment) -> None:
@@ -121,8 +124,8 @@ def require_headings(alignment: Alignment) -> None:
 
 
 def reference_mark(poses: Sequence[Mark]) -> Mark | None:
-    """Return the hold that fixes the body: the first N-pose, else the first T-pose."""
-    for label in ("n", "t"):
+    """Return the hold that fixes the body: the first N-pose, else T-pose, else sitting."""
+    for label in REFERENCE_POSES:
         for mark in poses:
             if mark.label == label:
                 return mark
@@ -233,8 +236,8 @@ def _align_limb(
         sensor_from_segment, sigma = from_bow(hold.up(), others["bow"].up(), up_in_segment, place in _LIFTED)
         source = "bow"
     if sensor_from_segment is None:
-        for label in ("n", "t"):
-            if label in others:
+        for label in REFERENCE_POSES:
+            if sensor_from_segment is None and label in others:
                 other_up = rotation.rotate(rotation.inverse(reference_pose(label)[segment]), UP)
                 sensor_from_segment, sigma = from_two_poses(hold.up(), others[label].up(), up_in_segment, other_up)
                 source = "two poses"

@@ -114,6 +114,9 @@ MEASURED_PARENT: dict[Place, Place] = {
 }
 """The 14 joints between measured segments: child to parent."""
 
+REFERENCE_POSES = ("n", "t", "sit")
+"""Poses that are known for every segment, in the order in which they serve as the reference."""
+
 LEFT_ARM = (Segment.LeftArm, Segment.LeftForeArm, Segment.LeftHand)
 RIGHT_ARM = (Segment.RightArm, Segment.RightForeArm, Segment.RightHand)
 
@@ -210,13 +213,18 @@ class Skeleton:
 
 
 def reference_pose(name: str) -> NDArray[np.float64]:
-    """Return ``world_from_segment`` (23, 4) of the pose ``n`` (N-pose) or ``t`` (T-pose)."""
+    """Return ``world_from_segment`` (23, 4) of a reference pose.
+
+    ``n``: N-pose. ``t``: T-pose. ``sit``: upright on a chair, thighs level, shanks upright, arms hanging.
+    """
+    if name not in REFERENCE_POSES:
+        raise ValueError(f"no reference pose is called {name!r}")
     pose = np.tile(frames.N_POSE, (SEGMENTS, 1))
     if name == "t":
         pose[list(LEFT_ARM)] = frames.LEFT_ARM_T_POSE
         pose[list(RIGHT_ARM)] = frames.RIGHT_ARM_T_POSE
-    elif name != "n":
-        raise ValueError(f"no reference pose is called {name!r}")
+    elif name == "sit":
+        pose[[Segment.LeftUpLeg, Segment.RightUpLeg]] = frames.SITTING_THIGH
     return pose
 
 

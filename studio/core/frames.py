@@ -39,3 +39,7 @@ LEFT_ARM_T_POSE.flags.writeable = False
 RIGHT_ARM_T_POSE: NDArray[np.float64] = np.array([1.0, 0.0, 0.0, 0.0])
 """``world_from_segment`` of the right arm chain in T-pose."""
 RIGHT_ARM_T_POSE.flags.writeable = False
+
+SITTING_THIGH: NDArray[np.float64] = np.array([0.5, 0.5, -0.5, 0.5])
+"""``world_from_segment`` of both thighs while sitting upright: N-pose flexed by 90 degrees about the right axis."""
+SITTING_THIGH.flags.writeable = False

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from studio.core import rotation
 from studio.core.alignment import align, heading_in, hold_all, require_headings
-from studio.core.body import Place, Skeleton
+from studio.core.body import REFERENCE_POSES, Place, Skeleton
 from studio.core.errors import AlignmentError, PoseMissing
 from studio.core.full_body import FullBody
 from studio.core.live_solver import Solver, samples_of
@@ -103,7 +103,7 @@ def find_alignment(
     """Return the alignment of a take and notes on what had to be assumed."""
     poses = _poses(take, options)
     notes: tuple[str, ...] = ()
-    assumed = not any(mark.label in ("n", "t") for mark in poses)
+    assumed = not any(mark.label in REFERENCE_POSES for mark in poses)
     if assumed:
         poses = (Mark(0.0, "pose", "n", min(ASSUMED_POSE, take.duration())), *poses)
         notes = ("No pose was marked: the first second is taken for N-pose, and all angles are relative to it.",)
@@ -137,7 +137,7 @@ def _headings(
         return {}
     reference = Mark(alignment.from_s, "pose", alignment.pose, alignment.to_s)
     headings: dict[int, float] = {}
-    for mark in (reference, *(m for m in poses if m.label in ("n", "t"))):
+    for mark in (reference, *(m for m in poses if m.label in REFERENCE_POSES)):
         hold = hold_all({place: track}, mark, take.duration(), required=False).get(place)
         if hold is not None and hold.group not in headings:
             first = mark is reference

@@ -82,6 +82,59 @@ def test_two_poses_give_the_arms_their_mounting_without_a_bow():
     assert np.degrees(rotation.angle_between(elbow, np.tile(rotation.IDENTITY, (len(solved), 1)))).max() < 0.5
 
 
+def sitting_take(poses):
+    """Standing from 1 to 4 s, sitting from 6.5 to 9 s."""
+    time = np.arange(round(12 * RATE) + 1) / RATE
+    share = np.clip((time - 4.5) / 1.0, 0, 1)
+    share = share * share * (3 - 2 * share)
+    motion = {
+        place: rotation.slerp(
+            np.tile(reference_pose("n")[SEGMENT_OF[place]], (len(time), 1)),
+            reference_pose("sit")[SEGMENT_OF[place]],
+            share,
+        )
+        for place in LOWER
+    }
+    return worn_take(LOWER, 12.0, motion=motion, poses=poses)
+
+
+def test_sitting_after_standing_tells_of_the_thighs():
+    take, truth = sitting_take((Mark(1.0, "pose", "n", 4.0), Mark(6.5, "pose", "sit", 9.0)))
+
+    motion = solve(take).motion
+
+    assert motion.alignment.limbs[Place.LEFT_THIGH].source == "two poses"
+    assert motion.alignment.limbs[Place.LEFT_SHANK].source == "unknown"
+    thigh = motion.world_from_segment[:, SEGMENT_OF[Place.LEFT_THIGH]]
+    assert np.degrees(rotation.angle_between(thigh, truth[Place.LEFT_THIGH])).max() < 0.5
+
+
+def test_while_sitting_the_knees_are_in_front_of_the_hips():
+    held = reference_pose("sit")[SEGMENT_OF[Place.LEFT_THIGH]]
+
+    np.testing.assert_allclose(rotation.rotate(held, [0, -1, 0]), [1, 0, 0], atol=1e-12)
+    np.testing.assert_allclose(rotation.rotate(held, [0, 0, 1]), [0, -1, 0], atol=1e-12)
+
+
+def test_who_cannot_stand_may_be_aligned_sitting():
+    take, truth = sitting_take((Mark(6.5, "pose", "sit", 9.0),))
+    streams = [
+        stream(
+            sensor_of(place),
+            rotation.multiply(truth[place], rotation.inverse(strap_rule()[place])),
+            take.streams[0].time,
+        )
+        for place in LOWER
+    ]
+    seated = replace(take, streams=tuple(streams), setup=replace(take.setup, mounting="strapped"))
+
+    motion = solve(seated).motion
+
+    assert motion.alignment.pose == "sit"
+    held = motion.world_from_segment[int(8 * RATE)]
+    assert np.degrees(rotation.angle_between(held, reference_pose("sit"))).max() < 0.2
+
+
 def strapped_take(off):
     """Tags put on by the pictures, each turned by up to ``off`` rad about the limb."""
     take, truth = worn_take(LOWER, poses=(N_HOLD,))
