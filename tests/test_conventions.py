@@ -97,6 +97,25 @@ def groups(kind: type[StudioError] = StudioError) -> Iterator[str]:
             yield from groups(child)
 
 
+def leaves(kind: type[StudioError] = StudioError) -> Iterator[str]:
+    below = kind.__subclasses__()
+    if not below:
+        yield kind.__name__
+    for child in below:
+        yield from leaves(child)
+
+
+def test_every_error_is_made_somewhere():
+    made = {
+        node.func.id
+        for path in STUDIO
+        for node in ast.walk(TREES[path])
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)
+    }
+
+    assert set(leaves()) - made == set()
+
+
 def test_errors_are_raised_by_their_own_name_and_not_by_their_group():
     raised = {
         node.exc.func.id: f"{name(path)}:{node.lineno}"

@@ -2,9 +2,10 @@
 
 Without a magnetometer every sensor's attitude has its own unknown heading, and one held pose gives three
 equations for four unknowns. The fourth fact is taken in this order, and stored: a second hold (a bow, or
-another reference pose: T-pose tells of the arms, sitting of the thighs), a common heading sent by the source, the strap rule. Paper 002's bias
-quaternion ``Q_B = Q_IMU^-1 Q_R`` is the case in which the fourth fact is "the heading is already right";
-its two-sided form is ``world_from_segment = heading * world_from_sensor * sensor_from_segment``.
+another reference pose: T-pose tells of the arms, sitting of the thighs), a common heading sent by the
+source, the strap rule. Paper 002's bias quaternion ``Q_B = Q_IMU^-1 Q_R`` is the case in which the fourth
+fact is "the heading is already right"; its two-sided form is
+``world_from_segment = heading * world_from_sensor * sensor_from_segment``.
 """
 
 import math
@@ -84,7 +85,8 @@ def align(
     Parameters
     ----------
     poses : sequence of Mark
-        Kind ``pose``, labels ``n``, ``t``, ``sit``, ``bow``; the first ``n`` (else ``t``, else ``sit``) is the reference.
+        Kind ``pose``, labels ``n``, ``t``, ``sit``, ``bow``; the first ``n``, else ``t``, else ``sit`` is the
+        reference.
     take_s : float, s
         Length of the take, for the messages.
 

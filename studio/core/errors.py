@@ -5,8 +5,8 @@ The tree::
     StudioError
     ├── LinkError         PortGone · PortBusy · PortForbidden · SourceUnreadable · NoData
     ├── ProtocolError     UnsupportedVersion
-    ├── CalibrationError  NotAtRest · CalibrationUnreadable
-    ├── SetupError        PlaceTakenTwice · SensorUnknown · PlaceUnknown · PersonCodeInvalid
+    ├── CalibrationError  CalibrationUnreadable
+    ├── SetupError        PlaceTakenTwice · PersonCodeInvalid
     ├── AlignmentError    PoseMissing · PoseTooShort · MovedDuringHold · HeadingsUnknown
     ├── TakeFileError     NotATake · Damaged · WrittenByNewerStudio · TakeUnsafe · TruthMissing
     ├── RecordingError    DiskFull · FolderNotWritable · VerificationFailed
@@ -89,15 +89,6 @@ class CalibrationError(StudioError):
 
 
 @dataclass(eq=False)
-class NotAtRest(CalibrationError):
-    """No stretch of the recording is still enough to measure the gyroscope's offset."""
-
-    sensor: str
-    needed_s: float
-    longest_s: float
-
-
-@dataclass(eq=False)
 class CalibrationUnreadable(CalibrationError):
     """A calibration file is not what it should be."""
 
@@ -115,21 +106,6 @@ class PlaceTakenTwice(SetupError):
 
     place: str
     sensors: tuple[str, ...]
-
-
-@dataclass(eq=False)
-class SensorUnknown(SetupError):
-    """A sensor was named that is not in the take."""
-
-    sensor: str
-    known: tuple[str, ...]
-
-
-@dataclass(eq=False)
-class PlaceUnknown(SetupError):
-    """A place was named that is none of the fifteen."""
-
-    place: str
 
 
 @dataclass(eq=False)

@@ -164,12 +164,6 @@ TEMPLATES = _by_id(
     ),
     # Calibration and body calibration
     Message(
-        "cal.not_still",
-        "Sensor {sensor} was never still for long enough.",
-        "{needed_s} of stillness are needed; the longest was {longest_s}.",
-        "Lay the sensor on a table that does not shake and record again.",
-    ),
-    Message(
         "cal.file",
         "The calibration file {file} cannot be used.",
         "The reason: {reason}.",
@@ -208,18 +202,6 @@ TEMPLATES = _by_id(
         "One place has two sensors, or one sensor two places.",
         "Place: {place}. Sensor: {sensors}.",
         "Give each place one sensor.",
-    ),
-    Message(
-        "set.sensor_unknown",
-        "There is no sensor {sensor} in this take.",
-        "The take holds: {known}.",
-        "Name one of these.",
-    ),
-    Message(
-        "set.place_unknown",
-        "“{place}” is not a place on the body.",
-        "The studio knows fifteen places, from head to right foot.",
-        "Name one of them, for example left forearm.",
     ),
     Message(
         "set.person_code",
@@ -336,15 +318,12 @@ MESSAGE_OF: dict[type[StudioError], str | Callable[[Any], str]] = {
     errors.SourceUnreadable: "con.source",
     errors.NoData: lambda error: "con.garbage" if error.malformed else "con.none",
     errors.UnsupportedVersion: lambda error: "con.tag_newer" if error.found > error.supported else "con.tag_older",
-    errors.NotAtRest: "cal.not_still",
     errors.CalibrationUnreadable: "cal.file",
     errors.PoseMissing: "cal.no_pose",
     errors.PoseTooShort: "cal.pose_outside",
     errors.MovedDuringHold: "cal.moved",
     errors.HeadingsUnknown: "cal.heading",
     errors.PlaceTakenTwice: "set.place_twice",
-    errors.SensorUnknown: "set.sensor_unknown",
-    errors.PlaceUnknown: "set.place_unknown",
     errors.PersonCodeInvalid: "set.person_code",
     errors.DiskFull: lambda error: "rec.disk_full" if error.kept_s > 0 else "rec.no_room",
     errors.FolderNotWritable: "rec.folder",
