@@ -18,6 +18,11 @@ _HEADINGS = (
     "sensor", "place", "samples", "lost", "gaps", "longest", "rate", "clipped", "battery", "skew", "calibration",
 )  # fmt: skip
 
+RECOVERED = (
+    "A take was recovered: its recording was cut off, and what was safe by then is in {folder}. "
+    "Look at it with: studio inspect {folder}"
+)
+
 STAGES = {"read": "reading", "solve": "solving", "write": "writing"}
 
 

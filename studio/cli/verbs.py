@@ -23,6 +23,7 @@ from studio.cli import reports
 from studio.export.bvh import PRESETS as BVH_PRESETS
 from studio.export.csv_tables import PRESETS as CSV_PRESETS
 from studio.export.material import Wish
+from studio.storage.session_folder import list_takes
 from studio.storage.take_reader import read_take
 
 R = TypeVar("R")
@@ -45,6 +46,7 @@ def devices(arguments: Namespace) -> None:
 def record(arguments: Namespace) -> None:
     """Record a take; Ctrl+C and a polite kill end it as the time would."""
     request = RecordRequest(arguments.source, arguments.seconds, arguments.library, arguments.person, arguments.name)
+    _tell_of_recovered(arguments.library)
     runtime = Runtime()
     session = LiveSession(pre_roll=FOREVER)
     stop = asyncio.Event()
@@ -62,6 +64,13 @@ def record(arguments: Namespace) -> None:
     finally:
         runtime.stop()
     print(saved.folder)
+
+
+def _tell_of_recovered(folder: Path) -> None:
+    """Name the takes whose recording was cut off: they are offered, never opened or changed by themselves."""
+    for take in list_takes(folder):
+        if take.recovered:
+            print(reports.RECOVERED.format(folder=take.folder), file=sys.stderr)
 
 
 def import_recording(arguments: Namespace) -> None:
