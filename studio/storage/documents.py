@@ -1,6 +1,7 @@
 """Small JSON documents with a schema number: read with suspicion, written so that they are never half."""
 
 import contextlib
+import inspect
 import json
 from pathlib import Path
 from typing import Any, Literal, TypeVar
@@ -53,8 +54,12 @@ def schema_of(kind: type[msgspec.Struct], title: str) -> dict[str, Any]:
     """Return the JSON Schema of a document; unknown numbers are left out of documents, so their defaults go."""
     schema = msgspec.json.schema(kind)
     text = json.dumps({"$schema": "https://json-schema.org/draft/2020-12/schema", "title": title, **schema})
-    return json.loads(text, object_hook=_without_nan_default)  # type: ignore[no-any-return]
+    return json.loads(text, object_hook=_published)  # type: ignore[no-any-return]
 
 
-def _without_nan_default(node: dict[str, Any]) -> dict[str, Any]:
-    return {key: value for key, value in node.items() if key != "default" or "NaN" not in json.dumps(value)}
+def _published(node: dict[str, Any]) -> dict[str, Any]:
+    published = {key: value for key, value in node.items() if key != "default" or "NaN" not in json.dumps(value)}
+    described = published.get("description")
+    if isinstance(described, str):  # a docstring, which Python before 3.13 leaves indented
+        published["description"] = inspect.cleandoc(described)
+    return published

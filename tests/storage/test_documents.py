@@ -159,7 +159,8 @@ def test_a_tag_keeps_its_calibrations_newest_first(tmp_path: Path) -> None:
     assert [file.name for file in tmp_path.iterdir()] == ["00000000.json"]
     assert (tag.nickname, tag.place) == ("lefty", Place.LEFT_SHANK)
     assert [calibration.date for calibration in tag.calibrations] == [later.date, CALIBRATION.date]
-    assert read_calibration(tmp_path / "00000000.json") == tag.calibrations
+    # As text: what is unknown is NaN, and NaN equals nothing.
+    assert repr(read_calibration(tmp_path / "00000000.json")) == repr(tag.calibrations)
 
 
 def test_a_calibration_file_keeps_every_digit(tmp_path: Path) -> None:
