@@ -123,13 +123,15 @@ class SerialLink:
     def _read(self) -> None:
         """Hand over bytes until closing; the reader's thread, the only one that opens and closes the port."""
         self._greet()
-        while not self._closing.is_set():
+        last = False
+        while not last:
+            last = self._closing.is_set()  # asked before reading: what came until then is still handed over
             try:
-                data = self._port.read(self._port.in_waiting or 1)
+                data = self._port.read(self._port.in_waiting or (0 if last else 1))
             except OSError:
                 # pyserial: SerialException from read, OSError(5) from in_waiting, again with every call.
                 self._port.close()
-                if not self._reopen():
+                if last or not self._reopen():
                     return
                 continue
             if data:

@@ -215,8 +215,9 @@ def test_what_came_before_closing_is_still_handed_over(bench):
     async def story() -> None:
         link = await SerialDriver().open(str(bench.name))
         await bench.hear(1)
-        bench.say(b"last words")
+        bench.say(b"last ")
         await until(lambda: link._held)  # noqa: SLF001
+        bench.say(b"words")  # while the reader pauses after what it has just read
         await link.close()
 
         arrivals: list[Arrival] = []
