@@ -7,4 +7,5 @@ root=$(CDPATH='' cd -- "$(dirname -- "$0")" && pwd)
 . "$root/installers/environment.sh"
 
 prepare run
+[ $# -gt 0 ] || needs_window
 exec "$venv/bin/python" -m studio "$@"

@@ -40,8 +40,7 @@ needs_compiler() {
 }
 
 has_blender_libraries() {
-    [ "$(uname)" != Linux ] || "$venv/bin/python" -c 'import ctypes, sys; [ctypes.CDLL(name) for name in sys.argv[1:]]' \
-        libX11.so.6 libXrender.so.1 libXfixes.so.3 libXi.so.6 libxkbcommon.so.0 libSM.so.6 libGL.so.1 >/dev/null 2>&1
+    has_libraries libX11.so.6 libXrender.so.1 libXfixes.so.3 libXi.so.6 libxkbcommon.so.0 libSM.so.6 libGL.so.1
 }
 
 needs_peers() {
@@ -70,6 +69,7 @@ stage() {
 
 needs_compiler
 prepare dev
+needs_window
 case $markers in *peers*) needs_peers ;; esac
 cd "$root"
 tool() {

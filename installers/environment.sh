@@ -74,6 +74,21 @@ find_complete_python() {
     fi
 }
 
+has_libraries() {
+    [ "$(uname)" != Linux ] ||
+        "$venv/bin/python" -c 'import ctypes, sys; [ctypes.CDLL(name) for name in sys.argv[1:]]' "$@" >/dev/null 2>&1
+}
+
+# needs_window: what Qt wants from the system; the verbs do without.
+needs_window() {
+    has_libraries libglib-2.0.so.0 libEGL.so.1 libGL.so.1 libdbus-1.so.3 libfontconfig.so.1 libxkbcommon.so.0 ||
+        install_debian "The window needs libraries that are missing (libEGL and others)" "install those of Qt 6" \
+            libglib2.0-0 libegl1 libgl1 libdbus-1-3 libfontconfig1 libxkbcommon0 fonts-dejavu-core
+    has_libraries libxkbcommon-x11.so.0 libxcb-cursor.so.0 libxcb-icccm.so.4 libxcb-keysyms.so.1 libxcb-shape.so.0 ||
+        install_debian "The window needs libraries of X11 that are missing (xcb-cursor and others)" "install those of Qt 6" \
+            libxkbcommon-x11-0 libxcb-cursor0 libxcb-icccm4 libxcb-keysyms1 libxcb-shape0
+}
+
 # prepare run|dev: afterwards $venv/bin/python has everything.
 prepare() {
     venv=${KINETAG_VENV:-$root/.venv}

@@ -11,6 +11,10 @@ from hypothesis import HealthCheck, settings
 ROOT = Path(__file__).resolve().parents[1]
 WORTH_A_LOOK = 400  # lines; tests/test_conventions.py refuses more than 600
 
+# No screen is needed: where there is none, Qt paints into memory.
+if not os.environ.get("DISPLAY") and not os.environ.get("WAYLAND_DISPLAY"):
+    os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
+
 # A loaded machine is slow, not wrong; CI finds the same examples in every run.
 settings.register_profile(
     "studio", deadline=None, derandomize=bool(os.environ.get("CI")), suppress_health_check=[HealthCheck.too_slow]

@@ -1,0 +1,1 @@
+"""Widgets: they render what the models say and emit what the operator intends."""
