@@ -172,3 +172,19 @@ def test_the_truth_tells_how_each_tag_really_was_worn():
 def test_bytes_that_are_no_truth_are_refused(data):
     with pytest.raises(ValueError, match="no true motion"):
         decode_truth(data)
+
+
+def test_seconds_ahead_arrive_at_once_and_lie_in_the_past():
+    async def first_of_now():
+        link = await SyntheticDriver().open("walk?tags=1&ahead=4")
+        opened = time.perf_counter()
+        async for batch in link.arrivals():
+            if batch[-1].received > opened:
+                await link.close()
+                return batch[-1].received - opened, time.perf_counter() - opened
+        raise AssertionError("the suit stopped")
+
+    late, waited = asyncio.run(first_of_now())
+
+    assert 0 < late < 0.6  # a batch is half a second at most
+    assert waited < 3.5  # four seconds of walking were not waited for

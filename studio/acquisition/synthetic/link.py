@@ -59,12 +59,12 @@ class SyntheticLink:
     async def arrivals(self) -> AsyncIterator[Sequence[Arrival | Known | Cue]]:
         """Yield what the receiver sends, paced by this computer's clock, until the link is closed."""
         if math.isnan(self._base):
-            self._base = time.perf_counter()
+            self._base = time.perf_counter() - self.options.ahead
         began, start = time.perf_counter(), self.suit.elapsed
         while not self._closed.is_set():
             heard = self.suit.next_block()
             for batch in self._batches(heard):
-                due = began + (batch[-1].at - start) / self.options.speed
+                due = began + (batch[-1].at - max(start, self.options.ahead)) / self.options.speed
                 await self._wait_until(due)
                 if self._closed.is_set():
                     return

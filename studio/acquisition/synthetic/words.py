@@ -12,6 +12,7 @@ from studio.core.errors import SourceUnreadable
 SCRIPTS = (*WORN_SCRIPTS, "rest", "turns")
 MOST_LOSS = 0.9
 MOST_SKEW = 1000.0  # ppm; a crystal has 20 to 50, an MPU-6050's own oscillator up to 50,000 and is not used
+MOST_AHEAD = 60.0  # s; made at 25 times real time, and whoever opens a link waits for it
 STATURES = (0.8, 2.3)  # m
 
 
@@ -30,6 +31,8 @@ class SuitOptions:
     calibrated: bool = False
     speed: float = 1.0
     """Times real time; infinite: as fast as it is read."""
+    ahead: float = 0.0
+    """s that are sent at once when the link opens, as if the studio had been listening since."""
     skew: float = 0.0
     """ppm; 0: all tags follow the receiver's clock."""
     reboot: float = math.inf
@@ -148,6 +151,7 @@ OPTIONS: dict[str, Callable[[str], dict[str, Any]]] = {
     "seed": lambda value: {"seed": _whole(value, 0, 2**53, "seed")},
     "calibrated": lambda value: {"calibrated": _one_of(value, {"0": False, "1": True}, "calibrated")},
     "speed": _speed,
+    "ahead": lambda value: {"ahead": _number(value, 0.0, MOST_AHEAD, "ahead")},
     "skew": lambda value: {"skew": _number(value, 0.0, MOST_SKEW, "skew")},
     "reboot": _reboot,
     "swap": _swap,
