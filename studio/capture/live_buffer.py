@@ -41,6 +41,13 @@ class LiveBuffer:
         self._pose: Pose | None = None
         self._attitudes: dict[SensorId, Quaternion] = {}
 
+    def clear(self) -> None:
+        """Forget everything."""
+        with self._lock:
+            self._rings.clear()
+            self._pose = None
+            self._attitudes = {}
+
     def add(self, sample: Sample) -> None:
         """Keep a sample."""
         with self._lock:

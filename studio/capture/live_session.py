@@ -94,6 +94,16 @@ class LiveSession:
         self._tasks.clear()
         self._intakes.clear()
 
+    def forget(self) -> None:
+        """Forget the sensors of a source that was closed."""
+        self.infos.clear()
+        self.buffer.clear()
+        self._pre_roll.clear()
+        self._poses.clear()
+        self._settled.clear()
+        self._newest_sensor, self._newest = math.inf, -math.inf
+        self._solver = Solver(self.setup, self._attitude, {}, HISTORY)
+
     async def sensors_known(self, patience: float = PATIENCE) -> None:
         """Wait until sensors send and no new one has appeared for half a second.
 
