@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 
 from studio.core import rotation
 from studio.core.body import REFERENCE_POSES, SEGMENT_OF, Place, reference_pose
-from studio.core.errors import HeadingsUnknown, MovedDuringHold, PoseMissing, PoseTooShort
+from studio.core.errors import HeadingsUnknown, MovedDuringHold, NoSensorWorn, PoseMissing, PoseTooShort
 from studio.core.facing import facing_from_hinges
 from studio.core.frames import UP
-from studio.core.sample import SensorId
+from studio.core.sample import Quaternion, SensorId
 from studio.core.strapping import STRAP_SIGMA, strap_rule
 from studio.core.take import Alignment, Assignment, HeadingSource, LimbAlignment, Mark, Mounting, PoseName
 from studio.core.track import SensorTrack
@@ -49,6 +49,8 @@ _LIFTED = frozenset(
         Place.RIGHT_THIGH,
     }
 )
+
+NO_MOUNTING: Quaternion = (1.0, 0.0, 0.0, 0.0)
 
 _POSE_NAMES: dict[str, PoseName] = {"n": "n", "t": "t", "sit": "sit"}
 
@@ -92,14 +94,16 @@ def align(
 
     Raises
     ------
-    PoseMissing, PoseTooShort, MovedDuringHold
+    NoSensorWorn, PoseMissing, PoseTooShort, MovedDuringHold
         HeadingsUnknown is not raised here: a limb without heading is ``unknown`` (see ``require_headings``).
     """
+    worn = {place: tracks[sensor] for place, sensor in assignment.sensors.items() if sensor in tracks}
+    if not worn:
+        raise NoSensorWorn(len(tracks))
     reference = reference_mark(poses)
     if reference is None:
         raise PoseMissing(take_s)
     pose = _POSE_NAMES[reference.label]
-    worn = {place: tracks[sensor] for place, sensor in assignment.sensors.items() if sensor in tracks}
     first = hold_all(worn, reference, take_s)
     moved = {p: h for p, h in first.items() if h.largest > LARGEST_DEVIATION or h.speed > LARGEST_SPEED}
     if moved:
@@ -111,7 +115,8 @@ def align(
         if (mark := _last(poses, label, reference)) is not None
     }
     facing = _common_facing(worn, first, reference)
-    limbs = {}
+    # Who was silent during the hold has no heading.
+    limbs = {place: LimbAlignment(NO_MOUNTING, 0.0, "unknown", math.pi, 0.0) for place in worn}
     for place, hold in first.items():
         elsewhere = {label: holds[place] for label, holds in others.items() if place in holds}
         limbs[place] = _align_limb(place, hold, reference.label, elsewhere, facing.get(place), mounting)
@@ -250,7 +255,7 @@ def _align_limb(
         sensor_from_segment = from_strap_rule(place, hold, reference)
         source, sigma = "strap rule", STRAP_SIGMA
     if sensor_from_segment is None:
-        return LimbAlignment((1.0, 0.0, 0.0, 0.0), 0.0, "unknown", math.pi, hold.spread)
+        return LimbAlignment(NO_MOUNTING, 0.0, "unknown", math.pi, hold.spread)
     return _limb(hold, pose, place, sensor_from_segment, source, sigma)
 
 

@@ -7,7 +7,7 @@ The tree::
     ├── ProtocolError     UnsupportedVersion
     ├── CalibrationError  CalibrationUnreadable
     ├── SetupError        PlaceTakenTwice · PersonCodeInvalid
-    ├── AlignmentError    PoseMissing · PoseTooShort · MovedDuringHold · HeadingsUnknown
+    ├── AlignmentError    NoSensorWorn · PoseMissing · PoseTooShort · MovedDuringHold · HeadingsUnknown
     ├── TakeFileError     NotATake · Damaged · WrittenByNewerStudio · TakeUnsafe · TruthMissing
     ├── RecordingError    DiskFull · FolderNotWritable · VerificationFailed
     ├── ImportFailed      RecordingUnreadable · MapFileInvalid · FormatUnknown
@@ -117,6 +117,14 @@ class PersonCodeInvalid(SetupError):
 
 class AlignmentError(StudioError):
     """The sensors could not be related to the body."""
+
+
+@dataclass(eq=False)
+class NoSensorWorn(AlignmentError):
+    """No sensor of the take sits on a place of the body."""
+
+    sensors: int
+    """how many the take has"""
 
 
 @dataclass(eq=False)

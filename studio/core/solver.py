@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from studio.core import rotation
 from studio.core.alignment import align, heading_in, hold_all, require_headings
 from studio.core.body import REFERENCE_POSES, Place, Skeleton
-from studio.core.errors import AlignmentError, PoseMissing
+from studio.core.errors import AlignmentError, NoSensorWorn, PoseMissing
 from studio.core.full_body import FullBody
 from studio.core.live_solver import Solver, samples_of
 from studio.core.pose import Method, Motion
@@ -110,11 +110,16 @@ def find_alignment(
     setup = take.setup
     try:
         alignment = align(tracks, setup.assignment, poses, setup.mounting, take.duration())
+    except NoSensorWorn:
+        raise
     except AlignmentError:
         if assumed:
             raise PoseMissing(take.duration()) from None
         raise
     require_headings(alignment)
+    unknown = [place.value.replace("_", " ") for place, limb in alignment.limbs.items() if limb.source == "unknown"]
+    if unknown:
+        notes = (*notes, f"Heading unknown, so shown without a sensor of its own: {', '.join(unknown)}.")
     return alignment, notes
 
 

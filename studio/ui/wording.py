@@ -177,6 +177,12 @@ TEMPLATES = _by_id(
         "Say when it was held, for example --pose n=2..5 for an N-pose from second 2 to second 5.",
     ),
     Message(
+        "cal.no_sensor",
+        "No sensor is worn in this take.",
+        "It has {sensors} sensors, and none of them is assigned to a place of the body.",
+        "Say in the map file or before recording where each one sits; raw and orientation tables can be had as it is.",
+    ),
+    Message(
         "cal.pose_outside",
         "The {pose} cannot be used.",
         "It was said to last from {from_s} to {to_s}; "
@@ -319,6 +325,7 @@ MESSAGE_OF: dict[type[StudioError], str | Callable[[Any], str]] = {
     errors.NoData: lambda error: "con.garbage" if error.malformed else "con.none",
     errors.UnsupportedVersion: lambda error: "con.tag_newer" if error.found > error.supported else "con.tag_older",
     errors.CalibrationUnreadable: "cal.file",
+    errors.NoSensorWorn: "cal.no_sensor",
     errors.PoseMissing: "cal.no_pose",
     errors.PoseTooShort: "cal.pose_outside",
     errors.MovedDuringHold: "cal.moved",

@@ -7,10 +7,10 @@ import pytest
 
 from studio.core import rotation
 from studio.core.body import MEASURED_PARENT, PLACES, PRESETS, SEGMENT_OF, Place, Segment
-from studio.core.errors import HeadingsUnknown, MovedDuringHold, PoseMissing
+from studio.core.errors import HeadingsUnknown, MovedDuringHold, NoSensorWorn, PoseMissing
 from studio.core.live_solver import Solver, samples_of
 from studio.core.solver import SolveOptions, solve
-from studio.core.take import Mark
+from studio.core.take import Assignment, Mark
 from tests.core.worn_sensors import BOW_HOLD, N_HOLD, RATE, procedure, worn_take
 
 LOWER = PRESETS["lower"]
@@ -191,6 +191,30 @@ def test_without_a_second_fact_no_heading_is_known_and_no_pose_is_made_up():
         solve(take)
 
     assert set(refusal.value.places) == {place.value for place in LOWER}
+
+
+def test_a_take_whose_sensors_sit_nowhere_says_so():
+    take, _ = worn_take(LOWER)
+    loose = replace(take, setup=replace(take.setup, assignment=Assignment()))
+
+    with pytest.raises(NoSensorWorn) as refusal:
+        solve(loose)
+
+    assert refusal.value.sensors == 7
+
+
+def test_a_sensor_that_was_silent_during_the_hold_is_named_and_not_measured():
+    take, _ = worn_take(LOWER)
+    row = LOWER.index(Place.LEFT_FOOT)
+    late = take.streams[row]
+    names = [n for n in late.__slots__ if n != "info"]
+    streams = list(take.streams)
+    streams[row] = replace(late, **{name: getattr(late, name)[int(9 * RATE) :] for name in names})
+
+    motion = solve(replace(take, streams=tuple(streams))).motion
+
+    assert not motion.measured[Place.LEFT_FOOT].any()
+    assert any("left foot" in note for note in motion.notes)
 
 
 def test_limbs_that_moved_during_the_hold_are_named():
