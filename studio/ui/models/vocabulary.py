@@ -1,0 +1,47 @@
+"""Clinic and studio: the same functions under two sets of words."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+from PySide6.QtCore import QCoreApplication
+
+VocabularyName = Literal["clinic", "studio"]
+
+
+@dataclass(frozen=True, slots=True)
+class Vocabulary:
+    """What the switch changes: words, how takes are named, and what exporting offers first."""
+
+    name: VocabularyName
+    person: str
+    new_person: str
+    session: str
+    take: str
+    take_name: str
+    """Name of a take nobody named."""
+    preset: str
+    """Key of the exporter that is offered first."""
+
+
+def vocabulary(name: VocabularyName) -> Vocabulary:
+    """Return the words of the clinic or of the studio, translated."""
+    tr = QCoreApplication.translate
+    if name == "clinic":
+        return Vocabulary(
+            name,
+            person=tr("Vocabulary", "Person"),
+            new_person=tr("Vocabulary", "New person…"),
+            session=tr("Vocabulary", "Session"),
+            take=tr("Vocabulary", "Take"),
+            take_name="trial",
+            preset="joints",
+        )
+    return Vocabulary(
+        name,
+        person=tr("Vocabulary", "Performer"),
+        new_person=tr("Vocabulary", "New performer…"),
+        session=tr("Vocabulary", "Session"),
+        take=tr("Vocabulary", "Take"),
+        take_name="take",
+        preset="bvh",
+    )
