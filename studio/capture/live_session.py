@@ -127,8 +127,10 @@ class LiveSession:
         return {sensor: health for intake in self._intakes.values() for sensor, health in intake.health().items()}
 
     def adopt(self, setup: Setup) -> None:
-        """Put another setup in force; a new assignment needs a new alignment."""
-        if setup.assignment != self.setup.assignment or setup.calibrations != self.setup.calibrations:
+        """Put another setup in force; a new assignment needs a new alignment, by poses whose samples are still kept."""
+        is_other = setup.assignment != self.setup.assignment or setup.calibrations != self.setup.calibrations
+        self.setup = setup
+        if is_other:
             calibrations = {calibration.sensor: calibration for calibration in setup.calibrations}
             self._solver = Solver(setup, self._attitude, calibrations, HISTORY)
             for info in self.infos.values():
@@ -136,8 +138,9 @@ class LiveSession:
             for kept in self._pre_roll:  # the filters have seen what is about to be kept
                 if isinstance(kept.piece, Sample):
                     self._solver.push(kept.piece)
-            self._poses.clear()
-        self.setup = setup
+            first = next((kept.piece.time for kept in self._pre_roll if isinstance(kept.piece, Sample)), math.inf)
+            self._poses = [pose for pose in self._poses if pose.time >= first]
+            self._align()
 
     async def start_recording(
         self, library: Path, person: str, name: str, source: str, seconds: float = math.inf
@@ -223,8 +226,11 @@ class LiveSession:
         """Note that a pose was held (times on the clock of ``Sample.time``) and align the body by it."""
         self._set(pose)
         self._poses.append(pose)
+        self._align()
+
+    def _align(self) -> None:
         assignment = self.setup.assignment
-        if not assignment.sensors:
+        if not assignment.sensors or not self._poses:
             return
         try:
             alignment = align(self._solver.tracks(), assignment, self._poses, self.setup.mounting, HISTORY)

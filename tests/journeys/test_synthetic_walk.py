@@ -9,7 +9,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.spatial.transform import Rotation, Slerp
 
 from studio.acquisition.synthetic.scripts import WORN_SCRIPTS
 from studio.acquisition.synthetic.truth import decode_truth
@@ -43,7 +42,9 @@ def walk(request, tmp_path_factory):
 
 
 def as_the_motion_has_it(take, fps):
-    """Forward kinematics of the motion at ``fps``, (n, 23, 3), m, world; between frames by scipy."""
+    """Return forward kinematics of the motion at ``fps``, (n, 23, 3), m, world; between frames by scipy."""
+    from scipy.spatial.transform import Rotation, Slerp
+
     motion = solve(take).motion
     if fps is None:
         return motion.joint_positions()
@@ -124,9 +125,8 @@ def test_a_single_tag_turns_its_segment_and_has_no_joint(tmp_path):
     assert bvh.code == 0
     assert read_bvh(tmp_path / "head.bvh").names[0] == "Hips"
     assert table.code == 1
-    assert table.err == (
-        "There is nothing to export. The take holds no joint angles. Choose something else to export, or another take.\n"
-    )
+    assert table.err.startswith("There is nothing to export. The take holds no joint angles. ")
+    assert table.err.count("\n") == 1
     assert not (tmp_path / "joints.csv").exists()
 
 
