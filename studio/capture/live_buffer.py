@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from studio.core.live_solver import Pose
-from studio.core.sample import Quaternion, Sample, SensorId
+from studio.core.sample import Flag, Quaternion, Sample, SensorId
 
 KEPT = 60.0  # s
 FASTEST = 100.0  # Hz; a faster sensor shows less than a minute
 
-COLUMNS = 12
-"""time, orientation (w x y z), rate (x y z), acceleration (x y z), frame."""
+COLUMNS = 13
+"""time, orientation (w x y z), rate (x y z), acceleration (x y z), frame, flags."""
 
 
 class Window(NamedTuple):
@@ -30,6 +30,8 @@ class Window(NamedTuple):
     """(n, 3), m/s²."""
     lost_before: NDArray[np.int64]
     """(n,), frames that are missing just before each sample."""
+    clipped: NDArray[np.bool_]
+    """(n,), readings at the end of the chip's range."""
 
 
 class LiveBuffer:
@@ -87,6 +89,7 @@ class _Ring:
             *sample.rate,
             *sample.acceleration,
             sample.frame,
+            sample.flags,
         )
         self._next = (self._next + 1) % len(self._rows)
         self._count = min(self._count + 1, len(self._rows))
@@ -104,4 +107,5 @@ def _window(rows: NDArray[np.float64]) -> Window:
     frames = rows[:, 11].astype(np.int64)
     lost = np.zeros(len(rows), np.int64)
     lost[1:] = np.maximum(np.diff(frames) - 1, 0)
-    return Window(rows[:, 0], rows[:, 1:5], rows[:, 5:8], rows[:, 8:11], lost)
+    clipped = rows[:, 12].astype(np.int64) & int(Flag.CLIPPED) > 0
+    return Window(rows[:, 0], rows[:, 1:5], rows[:, 5:8], rows[:, 8:11], lost, clipped)

@@ -3,15 +3,14 @@
 import numpy as np
 
 from studio.capture.live_buffer import FASTEST, KEPT, LiveBuffer
-from studio.core.sample import NAN, Sample, SensorId
+from studio.core.sample import NAN, Flag, Sample, SensorId
 
 A, B = SensorId("tag:0000000a"), SensorId("tag:0000000b")
 
 
-def sample(sensor, frame, time):
-    return Sample(
-        sensor, 0, frame, time, time, time, (1.0, 0.0, 0.0, 0.0), (0.1, 0.2, frame), (0.0, 0.0, 9.8), 0, NAN, NAN, NAN
-    )
+def sample(sensor, frame, time, flags=Flag.AT_REST):
+    turning, force = (0.1, 0.2, frame), (0.0, 0.0, 9.8)
+    return Sample(sensor, 0, frame, time, time, time, (1.0, 0.0, 0.0, 0.0), turning, force, flags, NAN, NAN, NAN)
 
 
 def test_only_what_is_asked_for_is_copied():
@@ -33,6 +32,14 @@ def test_lost_frames_are_marked_where_they_are_missing():
         buffer.add(sample(A, frame, frame * 0.02))
 
     assert buffer.snapshot([A], 10.0)[A].lost_before.tolist() == [0, 0, 0, 3, 0]
+
+
+def test_readings_at_the_end_of_the_range_are_marked():
+    buffer = LiveBuffer()
+    for frame in range(4):
+        buffer.add(sample(A, frame, frame * 0.02, Flag.CLIPPED | Flag.OFFSET_OK if frame == 2 else Flag.OFFSET_OK))
+
+    assert buffer.snapshot([A], 10.0)[A].clipped.tolist() == [False, False, True, False]
 
 
 def test_the_ring_keeps_the_newest():
