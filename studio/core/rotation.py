@@ -22,8 +22,9 @@ def multiply(a: ArrayLike, b: ArrayLike) -> Array:
     p, q = np.asarray(a, np.float64), np.asarray(b, np.float64)
     pw, px, py, pz = p[..., 0], p[..., 1], p[..., 2], p[..., 3]
     qw, qx, qy, qz = q[..., 0], q[..., 1], q[..., 2], q[..., 3]
-    out = np.empty(np.broadcast_shapes(p.shape, q.shape))
-    out[..., 0] = pw * qw - px * qx - py * qy - pz * qz
+    real = pw * qw - px * qx - py * qy - pz * qz
+    out = np.empty((*real.shape, 4))
+    out[..., 0] = real
     out[..., 1] = pw * qx + px * qw + py * qz - pz * qy
     out[..., 2] = pw * qy - px * qz + py * qw + pz * qx
     out[..., 3] = pw * qz + px * qy - py * qx + pz * qw
@@ -43,8 +44,9 @@ def rotate(a: ArrayLike, v: ArrayLike) -> Array:
     vx, vy, vz = p[..., 0], p[..., 1], p[..., 2]
     # v + 2 w (u x v) + 2 u x (u x v), written out: three times faster than np.cross on small arrays
     tx, ty, tz = 2 * (y * vz - z * vy), 2 * (z * vx - x * vz), 2 * (x * vy - y * vx)
-    out = np.empty((*np.broadcast_shapes(q.shape[:-1], p.shape[:-1]), 3))
-    out[..., 0] = vx + w * tx + y * tz - z * ty
+    first = vx + w * tx + y * tz - z * ty
+    out = np.empty((*first.shape, 3))
+    out[..., 0] = first
     out[..., 1] = vy + w * ty + z * tx - x * tz
     out[..., 2] = vz + w * tz + x * ty - y * tx
     return out
