@@ -1,0 +1,1 @@
+"""What an operator is led through step by step: state machines without a window and without a clock."""

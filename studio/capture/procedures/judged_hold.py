@@ -1,0 +1,146 @@
+"""What a held pose is worth, limb by limb; and one limb repeated while the others stay as they are."""
+
+import math
+import statistics
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
+from typing import Literal, NamedTuple
+
+from studio.core.alignment import Tracks, align, reference_mark, require_headings
+from studio.core.body import PLACES, Place
+from studio.core.errors import AlignmentError, MovedDuringHold
+from studio.core.take import Alignment, Assignment, HeadingSource, LimbAlignment, Mark, Mounting
+
+GOOD = math.radians(1.0)  # rad, root mean square; a standing person sways with an SD of 0.5°
+
+Grade = Literal["good", "fair", "moved", "silent"]
+
+
+class Judged(NamedTuple):
+    """A hold as the session judged it; both are there when some limbs moved and the others can be used."""
+
+    alignment: Alignment | None
+    error: AlignmentError | None
+
+
+class LimbResult(NamedTuple):
+    """What a hold gave for one limb."""
+
+    place: Place
+    degrees: float
+    """Deviation from the mean during the hold: root mean square, or the largest when it was refused. NaN: silent."""
+    grade: Grade
+    source: HeadingSource
+    heading_sigma: float
+    """Degrees, one standard deviation."""
+
+
+def limb_results(alignment: Alignment | None, error: AlignmentError | None) -> tuple[LimbResult, ...]:
+    """Return a result for each limb that was judged, in the order of Table 1."""
+    limbs: Mapping[Place, LimbAlignment] = {} if alignment is None else alignment.limbs
+    found = {place: _result(place, limb) for place, limb in limbs.items()}
+    if isinstance(error, MovedDuringHold):
+        for name, degrees in zip(error.places, error.degrees, strict=True):
+            found[Place(name)] = LimbResult(Place(name), degrees, "moved", "unknown", math.degrees(math.pi))
+    return tuple(found[place] for place in PLACES if place in found)
+
+
+def _result(place: Place, limb: LimbAlignment) -> LimbResult:
+    sigma = math.degrees(limb.heading_sigma)
+    # alignment gives exactly zero to whoever sent nothing during the hold
+    if limb.source == "unknown" and limb.spread == 0.0:
+        return LimbResult(place, math.nan, "silent", limb.source, sigma)
+    grade: Grade = "good" if limb.spread <= GOOD else "fair"
+    return LimbResult(place, math.degrees(limb.spread), grade, limb.source, sigma)
+
+
+def poses_with(poses: Sequence[Mark], held: Mark) -> tuple[Mark, ...]:
+    """Return the poses in force once ``held`` has been held: it replaces its like.
+
+    A new reference begins everything anew: what was held after the old one may have been held with other straps.
+    """
+    reference = reference_mark(poses)
+    if reference is not None and reference.label == held.label:
+        return (held,)
+    return (*(mark for mark in poses if mark.label != held.label), held)
+
+
+def judge(
+    tracks: Tracks,
+    assignment: Assignment,
+    poses: Sequence[Mark],
+    mounting: Mounting,
+    take_s: float,
+    only: Collection[Place] = (),
+) -> Judged:
+    """Return the alignment of all limbs that held still, and which did not.
+
+    Parameters
+    ----------
+    only : places
+        The limbs that are being repeated: nobody else is blamed for moving. Empty for the whole body.
+    """
+    moved: dict[str, float] = {}
+    worn = dict(assignment.sensors)
+    pose = poses[-1].label if poses else ""
+    while True:
+        try:
+            alignment = align(tracks, Assignment(worn), poses, mounting, take_s)
+        except MovedDuringHold as error:
+            moved |= dict(zip(error.places, error.degrees, strict=True))
+            pose = error.pose
+            worn = {place: sensor for place, sensor in worn.items() if place.value not in moved}
+            if worn:
+                continue
+            return Judged(None, _blamed(pose, moved, only))
+        except AlignmentError as error:
+            return Judged(None, error)
+        break
+    blamed = _blamed(pose, moved, only)
+    if blamed is not None:
+        return Judged(alignment, blamed)
+    try:
+        require_headings(alignment)
+    except AlignmentError as error:
+        return Judged(alignment, error)
+    return Judged(alignment, None)
+
+
+def _blamed(pose: str, moved: Mapping[str, float], only: Collection[Place]) -> MovedDuringHold | None:
+    names = tuple(place.value for place in PLACES if place.value in moved and (not only or place in only))
+    return MovedDuringHold(pose, names, tuple(moved[name] for name in names)) if names else None
+
+
+def merged(before: Alignment, fresh: Alignment, only: Collection[Place]) -> Alignment:
+    """Return ``before`` with the limbs ``only`` taken from a fresh hold.
+
+    A repeated hold may face another way than the first. How far is told by the limbs that were not to be
+    repeated: the worlds of their sensors did not turn, so that the difference of their headings is the turn of
+    the wearer. Without any, both holds count as facing the same way.
+    """
+    turn = _turn_between(before, fresh, only)
+    limbs = dict(before.limbs)
+    for place in only:
+        limb = fresh.limbs.get(place)
+        if limb is not None:
+            known = limb.source != "unknown"
+            limbs[place] = replace(limb, heading=_wrapped(limb.heading + turn)) if known else limb
+    return replace(before, limbs=limbs)
+
+
+def _turn_between(before: Alignment, fresh: Alignment, only: Collection[Place]) -> float:
+    """Return the wearer's turn from the first hold to the fresh one, rad: the median of the limbs that stayed."""
+    turns = [
+        before.limbs[place].heading - limb.heading
+        for place, limb in fresh.limbs.items()
+        if place not in only and place in before.limbs and "unknown" not in (limb.source, before.limbs[place].source)
+    ]
+    if not turns:
+        return 0.0
+    # Angles around one of them do not wrap unless they contradict each other by half a turn.
+    first = turns[0]
+    return first + statistics.median(_wrapped(turn - first) for turn in turns)
+
+
+def _wrapped(angle: float) -> float:
+    return math.remainder(angle, 2 * math.pi)
