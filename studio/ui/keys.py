@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
-from PySide6.QtCore import QT_TRANSLATE_NOOP, QObject, Qt, Signal
+from PySide6.QtCore import QT_TRANSLATE_NOOP, QCoreApplication, QObject, Qt, Signal
 from PySide6.QtGui import QKeySequence, QShortcut
 from PySide6.QtWidgets import (
     QAbstractButton,
@@ -26,8 +26,18 @@ class Key(NamedTuple):
 
     action: str
     keys: tuple[str, ...]
-    words: str
-    group: str
+    text: object
+    section: object
+
+    @property
+    def words(self) -> str:
+        """What the key does, translated."""
+        return QCoreApplication.translate("Keys", str(self.text))
+
+    @property
+    def group(self) -> str:
+        """Heading it stands under, translated."""
+        return QCoreApplication.translate("Keys", str(self.section))
 
 
 GENERAL = QT_TRANSLATE_NOOP("Keys", "Everywhere")

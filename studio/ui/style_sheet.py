@@ -3,9 +3,10 @@
 Views choose by property and write no style sheet of their own::
 
     QPushButton, QToolButton   kind    primary | quiet | record | segment
+    QPushButton                state   of the strip: ready | check | countdown | recording | saving | saved | problem
     QLabel                     role    caption | section | page | figure | muted
     QLabel                     tone    good | warn | bad | accent | rec
-    QFrame                     ground  window | panel | raised
+    QFrame                     ground  window | panel | raised | floating
 
 ``set_look(widget, kind="primary")`` sets them at any time; setting a property alone acts only before the first show.
 """
@@ -122,6 +123,8 @@ QFrame[ground="window"] { background-color: $window; border: none; }
 QFrame[ground="panel"] { background-color: $panel; border: none; }
 QFrame[ground="raised"] { background-color: $raised; border: none; border-radius: ${radius}px; }
 
+QFrame[ground="floating"] { background-color: $raised; border: 1px solid $edge; border-radius: ${radius}px; }
+
 QPushButton, QToolButton {
     color: $text; background-color: $raised; border: ${focus}px solid $line; border-radius: ${radius}px;
     min-height: ${control}px; padding: 0 ${side}px;
@@ -160,6 +163,24 @@ QPushButton[kind="record"] {
 QPushButton[kind="record"]:hover { color: $on_accent; background-color: $rec_hover; }
 QPushButton[kind="record"]:focus { border-color: $text; }
 QPushButton[kind="record"]:disabled { color: $muted; background-color: $panel; border-color: $line; }
+
+QPushButton[kind="state"] {
+    color: $text; background-color: transparent; border-color: transparent; font-weight: 600; text-align: left;
+}
+QPushButton[kind="state"]:focus { border-color: $accent; }
+QPushButton[state="ready"], QPushButton[state="saved"] { color: $good; }
+QPushButton[state="check"], QPushButton[state="countdown"] { color: $warn; }
+QPushButton[state="saving"] { color: $accent; }
+QPushButton[state="problem"] { color: $bad; }
+QPushButton[state="recording"] { color: $on_accent; background-color: $rec; }
+
+QToolButton[kind="rail"] {
+    color: $muted; background-color: transparent; font-size: ${caption_px}px; border: ${focus}px solid transparent;
+    border-left: 4px solid transparent; padding: ${gap}px ${grid}px;
+}
+QToolButton[kind="rail"]:hover { color: $text; background-color: $hover; }
+QToolButton[kind="rail"]:checked { color: $text; background-color: $selected; border-left-color: $accent; }
+QToolButton[kind="rail"]:focus { border-color: $accent; }
 
 QToolButton::menu-indicator { image: none; width: 0; }
 QPushButton::menu-indicator {

@@ -25,23 +25,23 @@ class Vocabulary:
 
 def vocabulary(name: VocabularyName) -> Vocabulary:
     """Return the words of the clinic or of the studio, translated."""
-    tr = QCoreApplication.translate
+    translate = QCoreApplication.translate
     if name == "clinic":
         return Vocabulary(
             name,
-            person=tr("Vocabulary", "Person"),
-            new_person=tr("Vocabulary", "New person…"),
-            session=tr("Vocabulary", "Session"),
-            take=tr("Vocabulary", "Take"),
+            person=translate("Vocabulary", "Person"),
+            new_person=translate("Vocabulary", "New person…"),
+            session=translate("Vocabulary", "Session"),
+            take=translate("Vocabulary", "Take"),
             take_name="trial",
             preset="joints",
         )
     return Vocabulary(
         name,
-        person=tr("Vocabulary", "Performer"),
-        new_person=tr("Vocabulary", "New performer…"),
-        session=tr("Vocabulary", "Session"),
-        take=tr("Vocabulary", "Take"),
+        person=translate("Vocabulary", "Performer"),
+        new_person=translate("Vocabulary", "New performer…"),
+        session=translate("Vocabulary", "Session"),
+        take=translate("Vocabulary", "Take"),
         take_name="take",
         preset="bvh",
     )
