@@ -37,6 +37,19 @@ def test_vectors_turn_as_scipy_turns_them():
     np.testing.assert_allclose(rotation.rotate(MANY, VECTORS), scipy_of(MANY).apply(VECTORS), atol=1e-12)
 
 
+def test_few_rotations_turn_as_many_do():
+    for few in (1, 5, 23, 40):
+        np.testing.assert_allclose(
+            rotation.multiply(MANY[:few], OTHERS[:few]), rotation.multiply(MANY, OTHERS)[:few], atol=1e-15
+        )
+        np.testing.assert_allclose(
+            rotation.rotate(MANY[:few], VECTORS[:few]), rotation.rotate(MANY, VECTORS)[:few], atol=1e-14
+        )
+    np.testing.assert_allclose(
+        rotation.multiply(MANY[0], OTHERS), rotation.multiply(np.tile(MANY[0], (500, 1)), OTHERS)
+    )
+
+
 def test_the_inverse_undoes():
     assert same_rotation(rotation.multiply(MANY, rotation.inverse(MANY)), np.tile(rotation.IDENTITY, (500, 1)))
 
