@@ -7,6 +7,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+import pytest
+from numpy.typing import NDArray
 
 from studio.cli import main
 
@@ -19,7 +21,7 @@ class Answer(NamedTuple):
     err: str
 
 
-def say(*words):
+def say(*words: object) -> Answer:
     """Run one verb in this process."""
     out, err = io.StringIO(), io.StringIO()
     with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
@@ -27,14 +29,25 @@ def say(*words):
     return Answer(code, out.getvalue(), err.getvalue())
 
 
-def recorded(source, seconds, library):
+def recorded(source: str, seconds: float, library: Path) -> Path:
     """Record from a source that is as fast as it can be, and return the folder of the take."""
     answer = say("record", "--source", source, "--seconds", seconds, "--library", library)
     assert answer.code == 0, answer.err
     return Path(answer.out.removesuffix("\n"))
 
 
-def columns_of(path):
+_RECORDED: dict[str, Path] = {}
+
+
+def minute_of_walking(seed: int, loss: float, folders: pytest.TempPathFactory) -> Path:
+    """Return the take of a calibrated suit's walk, recorded once for all tests that look at it."""
+    source = f"synthetic:walk?speed=max&seed={seed}&calibrated=1" + (f"&loss={loss}" if loss else "")
+    if source not in _RECORDED:
+        _RECORDED[source] = recorded(source, 60, folders.mktemp("walk"))
+    return _RECORDED[source]
+
+
+def columns_of(path: Path) -> dict[str, NDArray[np.float64]]:
     """Return the columns of a table of numbers by name; empty cells are NaN."""
     with path.open(newline="", encoding="utf-8") as file:
         names, *rows = csv.reader(file)

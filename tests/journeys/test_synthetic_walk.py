@@ -10,7 +10,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from studio.acquisition.synthetic.scripts import WORN_SCRIPTS
 from studio.acquisition.synthetic.truth import decode_truth
 from studio.capture.truth import compare_with_truth
 from studio.core.body import MEASURED_PARENT, PLACES, Place, Segment
@@ -19,7 +18,7 @@ from studio.core.take import Assignment
 from studio.importers.bvh import joint_positions, read_bvh
 from studio.storage.take_json import TakeDocument, save_document
 from studio.storage.take_reader import read_attachment, read_take
-from tests.journeys.command_line import columns_of, recorded, say
+from tests.journeys.command_line import columns_of, minute_of_walking, recorded, say
 
 MEDIAN, WORST = 1.0, 2.0  # degrees
 TOLERANCE = 1e-5  # m; a thousandth of a centimetre
@@ -35,10 +34,9 @@ WALKS = [
 
 @pytest.fixture(scope="module", params=WALKS)
 def walk(request, tmp_path_factory):
-    """Seed's calibrated walk of a minute: (share of lost packets, folder of the take)."""
+    """A calibrated walk of a minute: (share of lost packets, folder of the take)."""
     seed, loss = request.param
-    source = f"synthetic:walk?speed=max&seed={seed}&calibrated=1" + (f"&loss={loss}" if loss else "")
-    return loss, recorded(source, MINUTE, tmp_path_factory.mktemp("walk"))
+    return loss, minute_of_walking(seed, loss, tmp_path_factory)
 
 
 def as_the_motion_has_it(take, fps):
@@ -130,7 +128,9 @@ def test_a_single_tag_turns_its_segment_and_has_no_joint(tmp_path):
     assert not (tmp_path / "joints.csv").exists()
 
 
-@pytest.mark.parametrize("script", [script for script in WORN_SCRIPTS if script != "walk"])
+@pytest.mark.parametrize(
+    "script", ["t", "sit", "reach", *(pytest.param(script, marks=pytest.mark.long) for script in ("n", "bow"))]
+)
 def test_each_thing_the_performer_does_is_recorded_and_found(tmp_path, script):
     take = recorded(f"synthetic:{script}?speed=max&calibrated=1", 15, tmp_path)
 
