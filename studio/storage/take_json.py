@@ -3,7 +3,7 @@
 import contextlib
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, Literal
 
 import msgspec
 
@@ -14,6 +14,9 @@ from studio.storage.filesystem import FILES, FileSystem
 
 TAKE_JSON: Final = "take.json"
 SCHEMA: Final = 1
+
+Verdict = Literal["none", "star", "bad"]
+"""What the operator thinks of a take."""
 
 
 class Edit(msgspec.Struct, frozen=True):
@@ -32,6 +35,7 @@ class TakeDocument(msgspec.Struct, frozen=True):
     marks: tuple[Mark, ...] = ()
     """Added after recording, s of take time."""
     edits: tuple[Edit, ...] = ()
+    verdict: Verdict = "none"
     setup: Setup | None = None
     """The facts in force now; null or absent: as recorded."""
 

@@ -167,6 +167,17 @@ def sample_rows(messages: Messages) -> NDArray[np.void] | None:
     return rows
 
 
+def started_at(anchor: Anchor, zero: float) -> str:
+    """Return the UTC of take time 0; as the anchor has it when they are the same instant."""
+    elapsed = zero - anchor.monotonic
+    if not anchor.utc or elapsed == 0 or not math.isfinite(elapsed):
+        return anchor.utc
+    try:
+        return (datetime.fromisoformat(anchor.utc) + timedelta(seconds=elapsed)).isoformat()
+    except (ValueError, OverflowError):
+        return ""
+
+
 class _Content:
     """What the chunks of a take hold, sorted by what they are."""
 
@@ -294,23 +305,12 @@ def _take(reader: BlockReader, streams: tuple[Stream, ...], marks: tuple[Mark, .
         name=known.name,
         person=known.person,
         source=known.source,
-        started=_started(known.anchor, zero),
+        started=started_at(known.anchor, zero),
         streams=streams,
         marks=marks,
         setup=known.setup,
         versions=known.versions,
     )
-
-
-def _started(anchor: Anchor, zero: float) -> str:
-    """Return the UTC of take time 0; as the anchor has it when they are the same instant."""
-    elapsed = zero - anchor.monotonic
-    if not anchor.utc or elapsed == 0 or not math.isfinite(elapsed):
-        return anchor.utc
-    try:
-        return (datetime.fromisoformat(anchor.utc) + timedelta(seconds=elapsed)).isoformat()
-    except (ValueError, OverflowError):
-        return ""
 
 
 def _bodies(messages: Messages) -> Iterator[bytes]:
