@@ -2,13 +2,14 @@
 
 Views choose by property and write no style sheet of their own::
 
-    QPushButton, QToolButton   kind    primary | quiet | record | segment
+    QPushButton, QToolButton   kind    primary | quiet | record | recorder | segment
     QPushButton                state   of the strip: ready | check | countdown | recording | saving | saved | problem
-    QLabel                     role    caption | section | page | figure | muted
+    QLabel                     role    caption | section | page | figure | muted | strong
     QLabel                     tone    good | warn | bad | accent | rec
     QFrame                     ground  window | panel | raised | floating
 
 ``set_look(widget, kind="primary")`` sets them at any time; setting a property alone acts only before the first show.
+A font given with ``setFont`` is lost in between: weights and sizes come from ``role``.
 """
 
 from string import Template
@@ -110,6 +111,7 @@ _SHEET = """
 QLabel { background: transparent; }
 QLabel[role="caption"] { font-size: ${caption_px}px; color: $muted; }
 QLabel[role="muted"] { color: $muted; }
+QLabel[role="strong"] { font-weight: 600; }
 QLabel[role="section"] { font-size: ${section_px}px; font-weight: 600; }
 QLabel[role="page"] { font-size: ${page_px}px; font-weight: 600; }
 QLabel[role="figure"] { font-size: ${figure_px}px; }
@@ -153,13 +155,14 @@ QPushButton[kind="segment"], QToolButton[kind="segment"] {
     color: $muted; background-color: transparent; border-color: transparent; min-height: 24px;
 }
 QPushButton[kind="segment"]:hover { color: $text; background-color: $hover; }
-QPushButton[kind="segment"]:checked { color: $text; background-color: $selected; font-weight: 600; }
+QPushButton[kind="segment"]:checked { color: $text; background-color: $selected; }
 QPushButton[kind="segment"]:focus { border-color: $accent; }
 
 QPushButton[kind="record"] {
     color: $on_accent; background-color: $rec; border-color: $rec; font-weight: 600;
-    min-height: ${record}px; min-width: ${record}px;
+    min-height: ${record}px;
 }
+QPushButton[kind="recorder"] { min-height: ${record}px; font-weight: 600; }
 QPushButton[kind="record"]:hover { color: $on_accent; background-color: $rec_hover; }
 QPushButton[kind="record"]:focus { border-color: $text; }
 QPushButton[kind="record"]:disabled { color: $muted; background-color: $panel; border-color: $line; }
@@ -267,7 +270,7 @@ QTabBar::tab:hover { color: $text; }
 QTabBar::tab:focus { border-bottom-color: $text; }
 QTabWidget::pane { border: none; }
 
-QScrollArea { background: transparent; border: none; }
+QScrollArea, QScrollArea > QWidget > QWidget { background: transparent; border: none; }
 QScrollBar { background: transparent; border: none; }
 QScrollBar:vertical { width: ${bar}px; }
 QScrollBar:horizontal { height: ${bar}px; }

@@ -6,7 +6,6 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QLabel, QVBoxLayout, QWidget
 
 from studio.ui.style_sheet import set_look
-from studio.ui.theme import Theme
 from studio.ui.views.elided import ElidedLabel
 
 _SHAPES = {"good": "✔ ", "warn": "▲ ", "": ""}
@@ -46,9 +45,8 @@ class Fact(QWidget):
             self._tone = tone
             set_look(self._value, tone="warn" if tone == "warn" else "")
 
-    def restyle(self, theme: Theme) -> None:
+    def restyle(self) -> None:
         """Make room for the widest value, so that the strip never moves."""
-        self._value.setFont(theme.font("body"))
         self._value.setAlignment(Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft)
         self._value.ensurePolished()
         metrics = self._value.fontMetrics()

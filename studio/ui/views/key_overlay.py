@@ -2,11 +2,11 @@
 
 from collections.abc import Iterable, Mapping
 
-from PySide6.QtCore import Qt, Signal
-from PySide6.QtGui import QKeyEvent
+from PySide6.QtCore import QSize, Qt, Signal
+from PySide6.QtGui import QFontMetrics, QKeyEvent
 from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QLabel, QPushButton, QScrollArea, QVBoxLayout, QWidget
 
-from studio.ui.icons import icon
+from studio.ui.icons import SIZE, icon
 from studio.ui.keys import Key, in_words
 from studio.ui.theme import GAP, GAP_PAGE, GAP_WIDE, GRID, Theme
 
@@ -66,7 +66,9 @@ class KeyOverlay(QFrame):
 
     def restyle(self) -> None:
         """Take over colours and text size."""
-        self.close_button.setIcon(icon("close", self._theme.tokens.muted))
+        size = round(SIZE * max(self._theme.text_scale, 1.0))
+        self.close_button.setIconSize(QSize(size, size))
+        self.close_button.setIcon(icon("close", self._theme.tokens.muted, size))
         if self._rows:
             self._fill()
         self.place()
@@ -129,12 +131,14 @@ class KeyOverlay(QFrame):
         grid.setHorizontalSpacing(GAP_WIDE)
         grid.setVerticalSpacing(GRID)
         grid.setColumnStretch(1, 1)
+        metrics = QFontMetrics(self._theme.font("body", bold=True))
+        grid.setColumnMinimumWidth(0, max(metrics.horizontalAdvance(keys) for _, keys, _ in self._rows))
         title = QLabel(name, group)
         title.setProperty("role", "caption")
         grid.addWidget(title, 0, 0, 1, 2)
         for row, (keys, words) in enumerate(lines, 1):
             key = QLabel(keys, group)
-            key.setFont(self._theme.font("body", bold=True))
+            key.setProperty("role", "strong")
             text = QLabel(words, group)
             text.setWordWrap(True)
             grid.addWidget(key, row, 0, Qt.AlignmentFlag.AlignTop)

@@ -119,9 +119,10 @@ class MainWindow(QWidget):
 
     def ask_before_close(self) -> None:
         """Ask, once, whether to stop the recording; it goes on meanwhile."""
+        take = self._state.next_take or self.header.words.take
         self.sheet.ask(
             _CLOSE,
-            self.tr("{take} is still being recorded.").format(take=self._state.next_take or self.header.words.take),
+            self.tr("{take} is still being recorded.").format(take=take[:1].upper() + take[1:]),
             self.tr("Closing now stops it. What was recorded is saved and checked first."),
             self.tr("Stop and save"),
             self.tr("Keep recording"),
@@ -227,6 +228,7 @@ class MainWindow(QWidget):
         self.sheet.accepted.connect(self._on_answered)
         self.sheet.refused.connect(self._on_refused)
         self.keys.triggered.connect(self._on_key)
+        self.setFocus()  # else the first control of the header wears the focus ring at each start
         self.keys.offer((*PAGES, "record", "cancel", "help", "full_screen"))
 
     def _show_title(self) -> None:

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from typing import Literal, NamedTuple
 
-from PySide6.QtCore import QPoint, QRect, QSize, Qt, Signal
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QPushButton, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtCore import QEvent, QObject, QPoint, QRect, QSize, Qt, Signal
+from PySide6.QtWidgets import QBoxLayout, QFrame, QHBoxLayout, QLabel, QPushButton, QSizePolicy, QVBoxLayout, QWidget
 
 from studio.ui.icons import SIZE, icon, pixmap
 from studio.ui.theme import GAP, GAP_PAGE, GAP_WIDE, GRID, Theme
@@ -46,12 +46,16 @@ class Toast(QFrame):
         self._text.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Preferred)
         self._actions = QHBoxLayout()
         self._actions.setSpacing(GAP)
-        row = QHBoxLayout(self)
-        row.setContentsMargins(GAP_WIDE, GAP, GAP, GAP)
-        row.setSpacing(GAP)
-        row.addWidget(self._mark)
-        row.addWidget(self._text, 1)
-        row.addLayout(self._actions)
+        words = QHBoxLayout()
+        words.setSpacing(GAP)
+        words.addWidget(self._mark, 0, Qt.AlignmentFlag.AlignTop)
+        words.addWidget(self._text, 1)
+        self._box = QBoxLayout(QBoxLayout.Direction.LeftToRight, self)
+        self._box.setContentsMargins(GAP_WIDE, GAP, GAP, GAP)
+        self._box.setSpacing(GAP_WIDE)
+        self._box.addLayout(words, 1)
+        self._box.addLayout(self._actions)
+        parent.installEventFilter(self)
         self.hide()
 
     def keep_clear_of(self, widget: QWidget) -> None:
@@ -65,6 +69,7 @@ class Toast(QFrame):
         self.setAccessibleName(text)
         for button in self._buttons:
             self._actions.removeWidget(button)
+            button.hide()
             button.deleteLater()
         self._buttons = [_button(action, self, self._on_clicked) for action in actions]
         for button in self._buttons:
@@ -88,12 +93,27 @@ class Toast(QFrame):
     def place(self) -> None:
         """Take the lower left corner of the parent, or the upper one when the record button is there."""
         room = self._host.rect().adjusted(GAP_PAGE, GAP_PAGE, -GAP_PAGE, -GAP_PAGE)
-        wanted = self.sizeHint().width()
-        width = min(wanted, round(TOAST_WIDTH * max(self._theme.text_scale, 1.0)), room.width())
-        size = QSize(width, max(self.heightForWidth(width), self.sizeHint().height()))
+        most = min(round(TOAST_WIDTH * max(self._theme.text_scale, 1.0)), room.width())
+        self._text.setWordWrap(False)
+        self._box.setDirection(QBoxLayout.Direction.LeftToRight)
+        if self._box.sizeHint().width() > most:
+            self._box.setDirection(QBoxLayout.Direction.TopToBottom)
+        if self._box.sizeHint().width() > most:
+            self._text.setWordWrap(True)
+        width = min(self._box.sizeHint().width(), most)
+        if self._text.wordWrap():
+            width = most
+        height = self._box.heightForWidth(width) if self._box.hasHeightForWidth() else self._box.sizeHint().height()
+        size = QSize(width, height)
         lower = QRect(QPoint(room.left(), room.bottom() - size.height()), size)
         upper = QRect(room.topLeft(), size)
         self.setGeometry(upper if self._covers(lower) else lower)
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802 (Qt's name)
+        """Move with the corner it stands in."""
+        if event.type() == QEvent.Type.Resize and self.isVisible():
+            self.place()
+        return super().eventFilter(watched, event)
 
     def restyle(self) -> None:
         """Take over colours and text size."""
@@ -133,7 +153,6 @@ class Banner(QFrame):
         self._waiting = QLabel(self)
         self.close_button = QPushButton(self)
         self._build()
-        self.hide()
 
     @property
     def shown(self) -> str:
@@ -157,11 +176,13 @@ class Banner(QFrame):
 
     def restyle(self) -> None:
         """Take over colours and text size."""
-        self.close_button.setIcon(icon("close", self._theme.tokens.muted))
+        size = _icon_size(self._theme)
+        self.close_button.setIconSize(QSize(size, size))
+        self.close_button.setIcon(icon("close", self._theme.tokens.muted, size))
         self._fill()
 
     def _build(self) -> None:
-        self._what.setFont(self._theme.font("body", bold=True))
+        self._what.setProperty("role", "strong")
         self._waiting.setProperty("role", "caption")
         for label in (self._what, self._why, self._do):
             label.setTextFormat(Qt.TextFormat.PlainText)
@@ -185,11 +206,12 @@ class Banner(QFrame):
         row.addLayout(words, 1)
         row.addWidget(self._waiting, 0, Qt.AlignmentFlag.AlignTop)
         row.addWidget(self.close_button, 0, Qt.AlignmentFlag.AlignTop)
-        self.close_button.setIcon(icon("close", self._theme.tokens.muted))
+        self.restyle()
 
     def _fill(self) -> None:
         for button in self._buttons:
             self._choices.removeWidget(button)
+            button.hide()
             button.deleteLater()
         self._buttons = []
         self.setVisible(bool(self._messages))
@@ -198,7 +220,6 @@ class Banner(QFrame):
         what, why, do, actions, tone = self._messages[self.shown]
         theme = self._theme
         self._mark.setPixmap(pixmap(_SHAPES[tone], getattr(theme.tokens, tone), _icon_size(theme)))
-        self._what.setFont(theme.font("body", bold=True))
         for label, text in ((self._what, what), (self._why, why), (self._do, do)):
             label.setText(text)
             label.setVisible(bool(text))

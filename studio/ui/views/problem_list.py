@@ -86,7 +86,7 @@ class ProblemList(QFrame):
         self.buttons = []
         for row, problem in enumerate(self._problems):
             mark = QLabel(sheet)
-            mark.setPixmap(pixmap("warning", self._theme.tokens.warn, SIZE))
+            mark.setPixmap(pixmap("warning", self._theme.tokens.warn, round(SIZE * max(self._theme.text_scale, 1.0))))
             text = QLabel(problem.text, sheet)
             text.setWordWrap(True)
             grid.addWidget(mark, row, 0)

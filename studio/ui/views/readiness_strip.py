@@ -4,12 +4,13 @@ import math
 from collections.abc import Sequence
 
 from PySide6.QtCore import QSize, Qt, Signal
+from PySide6.QtGui import QFontMetrics
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QPushButton, QWidget
 
 from studio.ui.icons import SIZE, icon
 from studio.ui.models.readiness import ReadinessState, StripPhase, clock
 from studio.ui.style_sheet import set_look
-from studio.ui.theme import GAP, GAP_PAGE, GAP_WIDE, GRID, RECORD, Theme
+from studio.ui.theme import GAP, GAP_PAGE, GAP_WIDE, GRID, Theme
 from studio.ui.views.fact import Fact
 from studio.ui.views.flow import FlowLayout
 from studio.ui.views.problem_list import ProblemList
@@ -69,7 +70,7 @@ class ReadinessStrip(QFrame):
         for button in (self.state, self.items, self.record):
             button.setIconSize(QSize(round(SIZE * scale), round(SIZE * scale)))
         for fact in self._facts:
-            fact.restyle(theme)
+            fact.restyle()
         self.next_take.setMaximumWidth(round(NAME_WIDTH * scale))
         self.problems.restyle()
         self._look = ()
@@ -84,10 +85,9 @@ class ReadinessStrip(QFrame):
         self.items.setProperty("kind", "state")
         self.items.setProperty("state", "check")
         self.items.hide()
-        self.record.setMinimumHeight(RECORD)
         middle = QWidget(self)
         flow = FlowLayout(middle, gap=GAP_PAGE, line_gap=GRID)
-        for part in (self.items, *self._facts):
+        for part in (*self._facts, self.items):
             flow.addWidget(part)
         policy = middle.sizePolicy()
         policy.setHorizontalPolicy(policy.Policy.Ignored)
@@ -107,14 +107,11 @@ class ReadinessStrip(QFrame):
     def _reserve(self) -> None:
         """Make room for the widest word now, so that nothing moves when it comes."""
         words = [self._word(ReadinessState(phase, elapsed=59.8)) for phase in StripPhase]
-        self.state.ensurePolished()
-        metrics = self.state.fontMetrics()
+        metrics = QFontMetrics(self._theme.font("body", bold=True))
         widest = max(metrics.horizontalAdvance(word) for word in words)
         self.state.setMinimumWidth(widest + self.state.iconSize().width() + 4 * GAP)
-        # Text and icon of the widest of the three words on the button.
-        self.record.ensurePolished()
         labels = [self._action(phase) for phase in StripPhase]
-        widest = max(self.record.fontMetrics().horizontalAdvance(label) for label in labels)
+        widest = max(metrics.horizontalAdvance(label) for label in labels)
         self.record.setMinimumWidth(widest + self.record.iconSize().width() + 5 * GAP)
 
     def _show_word(self) -> None:
@@ -157,7 +154,7 @@ class ReadinessStrip(QFrame):
         self.record.setEnabled(phase is not StripPhase.SAVING)
         shape, colour = ("stop", tokens.on_accent) if filled else ("record", tokens.rec)
         self.record.setIcon(icon(shape, colour, self.record.iconSize().width()))
-        set_look(self.record, kind="record" if filled else "")
+        set_look(self.record, kind="record" if filled else "recorder")
 
     def _show_facts(self) -> None:
         s = self._state
