@@ -1,0 +1,1 @@
+"""Plots over time: signals of one sensor, joint angles of a take."""
