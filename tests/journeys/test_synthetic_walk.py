@@ -18,6 +18,7 @@ from studio.core.take import Assignment
 from studio.importers.bvh import joint_positions, read_bvh
 from studio.storage.take_json import TakeDocument, save_document
 from studio.storage.take_reader import read_attachment, read_take
+from tests.journeys.between_frames import joints_at
 from tests.journeys.command_line import columns_of, minute_of_walking, recorded, say
 
 MEDIAN, WORST = 1.0, 2.0  # degrees
@@ -40,21 +41,12 @@ def walk(request, tmp_path_factory):
 
 
 def as_the_motion_has_it(take, fps):
-    """Return forward kinematics of the motion at ``fps``, (n, 23, 3), m, world; between frames by scipy."""
-    from scipy.spatial.transform import Rotation, Slerp
-
+    """Return forward kinematics of the motion at ``fps``, (n, 23, 3), m, world."""
     motion = solve(take).motion
     if fps is None:
         return motion.joint_positions()
     last = (len(motion) - 1) * motion.frame_s
-    time = np.minimum(np.arange(int(last * fps + 1e-6) + 1) / fps, last)
-    own = np.arange(len(motion)) * motion.frame_s
-    turned = np.empty((len(time), len(Segment), 4))
-    for segment in Segment:
-        turns = Rotation.from_quat(motion.world_from_segment[:, segment], scalar_first=True)
-        turned[:, segment] = Slerp(own, turns)(np.minimum(time, own[-1])).as_quat(scalar_first=True)
-    hips = np.stack([np.interp(time, own, motion.hips[:, axis]) for axis in range(3)], axis=1)
-    return motion.skeleton.joint_positions(turned, hips)
+    return joints_at(motion, np.arange(int(last * fps + 1e-6) + 1) / fps)
 
 
 def test_the_joints_of_a_calibrated_walk_are_found_to_a_degree(walk):

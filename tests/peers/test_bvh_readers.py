@@ -5,6 +5,7 @@ Run with ``-m peers``; builds its environments first (400 MB, minutes) where ``e
 
 import json
 import subprocess
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,9 +13,13 @@ import pytest
 
 from studio.core import body
 from studio.core.body import Segment
+from studio.core.solver import solve
 from studio.export.bvh import PRESETS, RATES, bvh_blocks
 from studio.importers.bvh import joint_positions, read_bvh
+from studio.storage.take_reader import read_take
 from tests.export.moving_body import moving_body, standing
+from tests.journeys.between_frames import joints_at
+from tests.journeys.command_line import recorded, say
 from tests.peers.environments import Peers, build
 
 pytestmark = [pytest.mark.peers, pytest.mark.timeout(900)]
@@ -79,6 +84,45 @@ def test_all_readers_put_every_joint_where_the_motion_has_it(peers, tmp_path, pr
         assert read[reader]["parents"] == PARENT_NAMES
         assert read[reader]["warnings"] == []
     assert set(read["bvh"]["joints"]) == set(NAMES)
+
+
+LEGS = Path(__file__).resolve().parents[2] / "resources" / "samples" / "xio-lower-body"
+
+
+def real_sensors(folder):
+    """Seven x-IMU3 on somebody's legs."""
+    return Path(say("import", LEGS, "--library", folder).out.strip())
+
+
+def simulated_walk(folder):
+    return recorded("synthetic:walk?speed=max&calibrated=1&loss=0.05", 20, folder)
+
+
+@pytest.mark.parametrize(("preset", "fps"), [("blender", 30), ("motionbuilder", 120)])
+@pytest.mark.parametrize("made", [real_sensors, simulated_walk], ids=["real sensors", "simulated walk"])
+def test_what_a_person_exports_is_read_as_the_motion_that_was_solved(peers, tmp_path, made, preset, fps):
+    folder = made(tmp_path / "library")
+    target = tmp_path / "exported.bvh"
+
+    done = say("export", folder, "--format", "bvh", "--preset", preset, "--fps", fps, "-o", target)
+
+    assert done.code == 0, done.err
+    motion = solve(read_take(folder)[0]).motion
+    frames = int((len(motion) - 1) * motion.frame_s * fps + 1e-6) + 1
+    looked_at = [0, 1, frames // 3, frames // 2, frames - 1]
+    meant = joints_at(motion, np.array(looked_at) / fps)[..., [1, 2, 0]]
+    read = by_all(peers, target, looked_at)
+    apart = {}
+    for reader in READERS:
+        assert read[reader]["frames"] == frames, reader
+        found = np.array([[read[reader]["positions"][str(f)][name] for name in NAMES] for f in looked_at])
+        apart[reader] = np.abs(found / PRESETS[preset].units_per_metre - meant).max()
+    print(f"{made.__name__}, {preset} at {fps}: cm apart", {r: float(f"{100 * m:.1e}") for r, m in apart.items()})
+    assert max(apart.values()) < TOLERANCE, apart
+    assert read["blender"]["fps"] == fps
+    assert read["three"]["frame_time"] == pytest.approx(1 / fps, rel=1e-4)  # its times are single floats
+    assert read["bvhio"]["frame_time"] == pytest.approx(1 / fps, rel=1e-11)
+    assert read["blender"]["warnings"] == read["three"]["warnings"] == []
 
 
 @pytest.mark.parametrize("fps", RATES)
