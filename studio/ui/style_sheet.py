@@ -56,6 +56,9 @@ def style_sheet(theme: Theme) -> str:
 
 def _values(theme: Theme) -> dict[str, object]:
     t = theme.tokens
+    # Half as much as the text, because large text needs its room in width and in number of lines.
+    growth = max(1.0, (1 + theme.text_scale) / 2)
+    control, indicator = round(CONTROL * growth), round(INDICATOR * growth)
     return {
         "window": t.window,
         "panel": t.panel,
@@ -81,17 +84,20 @@ def _values(theme: Theme) -> dict[str, object]:
         "section_px": theme.pixels("section"),
         "page_px": theme.pixels("page"),
         "figure_px": theme.pixels("figure"),
-        "control": CONTROL - 2 * FOCUS,  # without the border
-        "field": CONTROL - 2,
-        "record": RECORD - 2 * FOCUS,
+        "control": control - 2 * FOCUS,  # without the border
+        "field": control - 2,
+        "segment": control - GAP,
+        "record": round(RECORD * growth) - 2 * FOCUS,
         "focus": FOCUS,
         "radius": RADIUS,
         "grid": GRID,
         "gap": GAP,
         "side": GAP + GRID,
-        "indicator": INDICATOR - 2 * FOCUS,
+        "indicator": indicator - 2 * FOCUS,
         "indicator_radius": GRID,
-        "radio_radius": INDICATOR // 2,
+        "radio_radius": indicator // 2,
+        "radio_edge": indicator * 3 // 10,
+        "radio_dot": indicator - 2 * (indicator * 3 // 10),
         "handle": HANDLE,
         "handle_radius": HANDLE // 2,
         "handle_out": -(HANDLE - GRID) // 2,
@@ -152,7 +158,7 @@ QPushButton[kind="quiet"]:checked, QToolButton[kind="quiet"]:checked { backgroun
 QPushButton[kind="quiet"]:focus, QToolButton[kind="quiet"]:focus { border-color: $accent; }
 
 QPushButton[kind="segment"], QToolButton[kind="segment"] {
-    color: $muted; background-color: transparent; border-color: transparent; min-height: 24px;
+    color: $muted; background-color: transparent; border-color: transparent; min-height: ${segment}px;
 }
 QPushButton[kind="segment"]:hover { color: $text; background-color: $hover; }
 QPushButton[kind="segment"]:checked { color: $text; background-color: $selected; }
@@ -219,7 +225,7 @@ QSpinBox::up-arrow, QDoubleSpinBox::up-arrow { image: url("$up"); width: 10px; h
 QSpinBox::down-arrow, QDoubleSpinBox::down-arrow { image: url("$down"); width: 10px; height: 10px; }
 
 QCheckBox, QRadioButton { color: $text; background: transparent; spacing: ${gap}px; min-height: 24px; }
-QCheckBox, QRadioButton { border: ${focus}px solid transparent; border-radius: ${radius}px; padding: 0 ${grid}px; }
+QCheckBox, QRadioButton { border: ${focus}px solid transparent; border-radius: ${radius}px; padding: 0 ${grid}px 0 0; }
 QCheckBox:focus, QRadioButton:focus { border-color: $accent; }
 QCheckBox:disabled, QRadioButton:disabled { color: $muted; }
 QCheckBox::indicator, QRadioButton::indicator {
@@ -228,7 +234,9 @@ QCheckBox::indicator, QRadioButton::indicator {
 QCheckBox::indicator { border-radius: ${indicator_radius}px; }
 QRadioButton::indicator { border-radius: ${radio_radius}px; }
 QCheckBox::indicator:checked { background-color: $accent; border-color: $accent; image: url("$tick"); }
-QRadioButton::indicator:checked { width: 8px; height: 8px; border: 6px solid $accent; background-color: $on_accent; }
+QRadioButton::indicator:checked {
+    width: ${radio_dot}px; height: ${radio_dot}px; border: ${radio_edge}px solid $accent; background-color: $on_accent;
+}
 QCheckBox::indicator:disabled, QRadioButton::indicator:disabled { border-color: $line; }
 
 QSlider { background: transparent; min-height: 24px; }

@@ -7,6 +7,8 @@ from PySide6.QtWidgets import QDialog, QHBoxLayout, QLabel, QPlainTextEdit, QPus
 from studio.ui.icons import SIZE, pixmap
 from studio.ui.theme import GAP, GAP_PAGE, GAP_WIDE, Theme
 
+WIDTH, HEIGHT = 640, 440  # px at 100 %
+
 
 class CrashDialog(QDialog):
     """Shown beside the window, which goes on as far as it can; it blocks nothing."""
@@ -77,7 +79,8 @@ class CrashDialog(QDialog):
         column.addWidget(self.report, 1)
         column.addWidget(self._file)
         column.addLayout(row)
-        self.resize(720, 520)
+        self.resize(round(WIDTH * max(self._theme.text_scale, 1.0)), round(HEIGHT * max(self._theme.text_scale, 1.0)))
+        self.copy.setFocus()
         self.copy.clicked.connect(self._on_copy)
         self.folder.clicked.connect(self.folder_requested)
         self.close_button.clicked.connect(self.close)

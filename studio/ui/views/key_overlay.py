@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QLabel, QPushBut
 from studio.ui.icons import SIZE, icon
 from studio.ui.keys import Key, in_words
 from studio.ui.theme import GAP, GAP_PAGE, GAP_WIDE, GRID, Theme
+from studio.ui.views.focus import give_back
 
 WIDTH = 760  # px at 100 %
 
@@ -49,9 +50,8 @@ class KeyOverlay(QFrame):
 
     def close_overlay(self) -> None:
         """Close, and give the focus back."""
+        give_back(self._before, self.window())
         self.hide()
-        if self._before is not None:
-            self._before.setFocus()
 
     def place(self) -> None:
         """Take the middle of the parent."""

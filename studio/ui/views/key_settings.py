@@ -24,6 +24,7 @@ class KeySettings(QWidget):
         self._theme = theme
         self._in_force: dict[str, tuple[str, ...]] = {}
         self._fields: dict[str, KeyField] = {}
+        self._resets: dict[str, QPushButton] = {}
         self._words: dict[str, str] = {}
         self._told = QLabel(self)
         self._told.setProperty("role", "muted")
@@ -52,7 +53,7 @@ class KeySettings(QWidget):
         for key in offered:
             if key.action not in self._fields:
                 self._add(key)
-            self._fields[key.action].setText(in_words(self._in_force[key.action]))
+            self._show(key.action)
 
     def restyle(self) -> None:
         """Take over the text size."""
@@ -73,11 +74,19 @@ class KeySettings(QWidget):
         self._grid.addWidget(words, row, 0)
         self._grid.addWidget(field, row, 1, Qt.AlignmentFlag.AlignRight)
         self._grid.addWidget(reset, row, 2)
-        self._fields[key.action] = field
+        policy = reset.sizePolicy()
+        policy.setRetainSizeWhenHidden(True)  # or the columns would move
+        reset.setSizePolicy(policy)
+        self._fields[key.action], self._resets[key.action] = field, reset
         self._words[key.action] = key.words
         field.pressed.connect(self._on_pressed)
         reset.clicked.connect(self._on_reset)
         self.restyle()
+
+    def _show(self, action: str) -> None:
+        self._fields[action].setText(in_words(self._in_force[action]))
+        default = next(key.keys for key in TABLE if key.action == action)
+        self._resets[action].setVisible(self._in_force[action] != default)
 
     def _tell(self, words: str) -> None:
         set_look(self._told, tone="warn" if words else "")
@@ -107,5 +116,5 @@ class KeySettings(QWidget):
     def _set(self, action: str, sequences: tuple[str, ...]) -> None:
         self._tell("")
         self._in_force[action] = sequences
-        self._fields[action].setText(in_words(sequences))
+        self._show(action)
         self.changed.emit({key.action: has for key in TABLE if (has := self._in_force[key.action]) != key.keys})

@@ -10,6 +10,7 @@ from studio.ui.icons import SIZE, icon, pixmap
 from studio.ui.theme import GAP, GAP_PAGE, GAP_WIDE, GRID, Theme
 from studio.ui.views.announcement import announce
 from studio.ui.views.flow import FlowLayout
+from studio.ui.views.focus import give_back
 
 Tone = Literal["good", "warn", "bad"]
 
@@ -131,6 +132,7 @@ class Toast(QFrame):
 
     def _on_clicked(self) -> None:
         action = self.sender().property("action")
+        give_back(None, self.window())
         self.hide()
         self.acted.emit(action)
 

@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QFrame, QGridLayout, QLabel, QPushButton, QScrollA
 from studio.ui.icons import SIZE, pixmap
 from studio.ui.models.readiness import Problem
 from studio.ui.theme import GAP, GAP_WIDE, Theme
+from studio.ui.views.focus import give_back
 
 WIDTH = 520  # px at 100 %
 
@@ -23,6 +24,7 @@ class ProblemList(QFrame):
         self._theme = theme
         self._problems: tuple[Problem, ...] = ()
         self._opener: QWidget | None = None
+        self._before: QWidget | None = None
         self.buttons: list[QPushButton] = []
         self.setProperty("ground", "floating")
         self.setAccessibleName(self.tr("What to do"))
@@ -51,7 +53,7 @@ class ProblemList(QFrame):
         if self.isVisible():
             self.close_list()
             return
-        self._opener = above
+        self._opener, self._before = above, above.window().focusWidget()
         self.setParent(above.window())
         self._fill()
         self._place()
@@ -62,6 +64,10 @@ class ProblemList(QFrame):
 
     def close_list(self) -> None:
         """Close."""
+        if self.isHidden():
+            return
+        if self.isAncestorOf(self.window().focusWidget() or self.window()):
+            give_back(self._before, self.window())
         self.hide()
 
     def restyle(self) -> None:

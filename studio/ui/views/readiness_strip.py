@@ -109,7 +109,7 @@ class ReadinessStrip(QFrame):
         words = [self._word(ReadinessState(phase, elapsed=59.8)) for phase in StripPhase]
         metrics = QFontMetrics(self._theme.font("body", bold=True))
         widest = max(metrics.horizontalAdvance(word) for word in words)
-        self.state.setMinimumWidth(widest + self.state.iconSize().width() + 4 * GAP)
+        self.state.setMinimumWidth(widest + self.state.iconSize().width() + 5 * GAP)
         labels = [self._action(phase) for phase in StripPhase]
         widest = max(metrics.horizontalAdvance(label) for label in labels)
         self.record.setMinimumWidth(widest + self.record.iconSize().width() + 5 * GAP)

@@ -60,11 +60,13 @@ class SettingsPage(QFrame):
         self.test_sound = QPushButton(self.tr("Test"), self)
         self.seen_from = [QPushButton(words, self) for words in (self.tr("Face me"), self.tr("From behind"))]
         self.keys = KeySettings(theme, self)
+        self._labels: list[QLabel] = []
         self._groups = (QButtonGroup(self), QButtonGroup(self))
         self._build()
         self._name()
         self._wire()
         self.show_preferences(Preferences(), "")
+        self.restyle()
 
     def show_preferences(self, preferences: Preferences, library: str) -> None:
         """Show what is in force; ``library`` is the folder of the takes, also when it is the studio's own."""
@@ -93,6 +95,12 @@ class SettingsPage(QFrame):
     def restyle(self) -> None:
         """Take over colours and text size."""
         self._form.setMaximumWidth(round(FORM_WIDTH * max(self._theme.text_scale, 1.0)))
+        for label in self._labels:
+            label.setMinimumWidth(0)
+            label.ensurePolished()
+        widest = max(label.sizeHint().width() for label in self._labels)
+        for label in self._labels:
+            label.setMinimumWidth(widest)
         self.scheme.restyle()
         self.text_size.restyle()
         self.keys.restyle()
@@ -197,7 +205,9 @@ class SettingsPage(QFrame):
         row = QHBoxLayout()
         row.setSpacing(GRID)
         if words:
-            row.addWidget(self._heading(words, "muted"))
+            label = self._heading(words, "muted")
+            self._labels.append(label)
+            row.addWidget(label)
             row.addSpacing(GAP_WIDE)
         for control in controls:
             row.addWidget(control, 1 if isinstance(control, QSlider) else 0)

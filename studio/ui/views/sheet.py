@@ -6,6 +6,7 @@ from PySide6.QtWidgets import QFrame, QLabel, QLineEdit, QPushButton, QVBoxLayou
 
 from studio.ui.theme import GAP, GAP_PAGE, GAP_WIDE, Theme
 from studio.ui.views.flow import FlowLayout
+from studio.ui.views.focus import give_back
 
 WIDTH = 440  # px at 100 %
 
@@ -40,8 +41,7 @@ class Sheet(QFrame):
         if question == self._question:
             return
         self._question = question
-        focused = self.window().focusWidget()
-        self._before = focused
+        self._before = self.window().focusWidget()
         self.setAccessibleName(title)
         self.setAccessibleDescription(text)
         self._title.setText(title)
@@ -63,9 +63,8 @@ class Sheet(QFrame):
         """Close without an answer: the question is over."""
         if self._question:
             self._question = ""
+            give_back(self._before, self.window())
             self.hide()
-            if self._before is not None:
-                self._before.setFocus()
 
     def place(self) -> None:
         """Stand in the upper third of the parent."""
