@@ -1,0 +1,201 @@
+"""The drawn person: a silhouette to put tags on, and the poses to hold. 200 units high, feet at the bottom."""
+
+import math
+from collections.abc import Mapping
+from functools import cache
+from itertools import pairwise
+
+from PySide6.QtCore import QPointF, QRectF
+from PySide6.QtGui import QPainterPath, QPolygonF
+
+from studio.core.body import Place
+from studio.core.take import PoseName
+
+HEIGHT = 200.0  # units
+WIDTH = 110.0  # units, with the hands a little away from the body
+
+Point = tuple[float, float]
+
+# Of the right half as seen from behind; the left half is its mirror.
+SPOTS: Mapping[Place, Point] = {
+    Place.HEAD: (0.0, 13.0),
+    Place.CHEST: (0.0, 50.0),
+    Place.RIGHT_UPPER_ARM: (29.5, 60.0),
+    Place.RIGHT_FOREARM: (39.5, 88.0),
+    Place.RIGHT_HAND: (47.0, 109.0),
+    Place.PELVIS: (0.0, 90.0),
+    Place.RIGHT_THIGH: (12.0, 128.0),
+    Place.RIGHT_SHANK: (14.5, 168.0),
+    Place.RIGHT_FOOT: (18.0, 191.0),
+}
+
+
+def spot(place: Place, *, facing: bool) -> Point:
+    """Return where a place is drawn, units from the middle of the head's top; ``facing``: the person faces us."""
+    if place in (Place.HEAD, Place.CHEST, Place.PELVIS):
+        return SPOTS[place]
+    right = place.value.startswith("right")
+    x, y = SPOTS[place if right else Place(place.value.replace("left", "right"))]
+    return (x if right != facing else -x, y)
+
+
+@cache
+def silhouette() -> QPainterPath:
+    """Return the outline of a standing person."""
+    body = QPainterPath()
+    body.addEllipse(QPointF(0, 14), 10.5, 13.5)
+    body = body.united(limb((0, 24), (0, 34), 5.5, 6.5)).united(_torso())
+    for side in (-1, 1):
+        arm = [((23.0, 42.5), 6.8), ((32.5, 71.0), 5.0), ((41.5, 97.0), 3.7)]
+        hand = [((42.5, 99.0), 4.2), ((48.0, 113.0), 2.6)]
+        leg = [((9.6, 98.0), 9.6), ((12.4, 141.0), 6.4), ((15.0, 183.0), 4.0)]
+        foot = [((15.4, 187.0), 4.2), ((19.0, 194.0), 5.0)]
+        for chain in (arm, hand, leg, foot):
+            for (a, wide), (b, narrow) in pairwise(chain):
+                body = body.united(limb((side * a[0], a[1]), (side * b[0], b[1]), wide, narrow))
+    return body.simplified()
+
+
+def _torso() -> QPainterPath:
+    torso = QPainterPath(QPointF(0, 31))
+    right: list[tuple[Point, Point, Point]] = [
+        ((9, 33), (20, 35), (25.5, 39)),
+        ((27, 46), (20.5, 55), (19.5, 62)),
+        ((18, 70), (14.5, 74), (15, 80)),
+        ((15.5, 88), (19, 92), (19.2, 100)),
+        ((19, 106), (8, 109), (0, 108)),
+    ]
+    for c1, c2, end in right:
+        torso.cubicTo(*c1, *c2, *end)
+    ends = [(0.0, 31.0), *(curve[2] for curve in right[:-1])]
+    for (c1, c2, _), end in zip(reversed(right), reversed(ends), strict=True):
+        torso.cubicTo(-c2[0], c2[1], -c1[0], c1[1], -end[0], end[1])
+    torso.closeSubpath()
+    return torso
+
+
+@cache
+def details(*, facing: bool) -> QPainterPath:
+    """Return the lines that tell front from back."""
+    lines = QPainterPath()
+
+    def curve(start: Point, control: Point, end: Point, *, both: bool = True) -> None:
+        for side in (-1, 1) if both else (1,):
+            lines.moveTo(side * start[0], start[1])
+            lines.quadTo(side * control[0], control[1], side * end[0], end[1])
+
+    if facing:
+        curve((3.4, 11.0), (4.4, 10.2), (5.4, 11.0))
+        curve((0.0, 12.5), (-2.6, 18.0), (1.0, 17.6), both=False)
+        curve((-3.4, 21.5), (0.0, 23.6), (3.4, 21.5), both=False)
+        curve((4.0, 36.5), (12.0, 38.5), (20.0, 40.0))
+        curve((9.0, 139.0), (12.4, 143.5), (15.8, 139.0))
+    else:
+        curve((-9.3, 17.0), (0.0, 24.0), (9.3, 17.0), both=False)
+        curve((0.0, 34.0), (0.0, 60.0), (0.0, 101.0), both=False)
+        curve((6.5, 45.0), (14.0, 52.0), (9.5, 61.0))
+        curve((2.5, 107.5), (9.0, 112.5), (16.5, 108.0))
+        curve((9.5, 143.0), (12.4, 140.0), (15.6, 143.0))
+    return lines
+
+
+def limb(a: Point, b: Point, radius_a: float, radius_b: float) -> QPainterPath:
+    """Return a rounded limb from ``a`` to ``b``."""
+    path = QPainterPath()
+    path.addEllipse(QPointF(*a), radius_a, radius_a)
+    end = QPainterPath()
+    end.addEllipse(QPointF(*b), radius_b, radius_b)
+    length = math.dist(a, b)
+    if length <= abs(radius_a - radius_b):
+        return path.united(end)
+    along = math.atan2(b[1] - a[1], b[0] - a[0])
+    # The tangents of two circles lean towards the smaller one.
+    lean = math.acos((radius_a - radius_b) / length)
+    corners = []
+    for side in (1, -1):
+        direction = (math.cos(along + side * lean), math.sin(along + side * lean))
+        pair = [(c[0] + r * direction[0], c[1] + r * direction[1]) for c, r in ((a, radius_a), (b, radius_b))]
+        corners += pair if side == 1 else pair[::-1]
+    between = QPainterPath()
+    between.addPolygon(QPolygonF([QPointF(*corner) for corner in corners]))
+    between.closeSubpath()
+    return path.united(between).united(end)
+
+
+# Chains of joints with their radii. Poses that lean are drawn from the wearer's left, facing left.
+_Chain = list[tuple[Point, float]]
+_STANDING: list[_Chain] = [
+    [((0, 30), 5.5), ((0, 60), 15), ((0, 96), 15)],
+    [((-8, 98), 9), ((-9, 141), 6.4), ((-10, 184), 4.2)],
+    [((8, 98), 9), ((9, 141), 6.4), ((10, 184), 4.2)],
+    [((-10, 188), 4), ((-13, 194), 4.6)],
+    [((10, 188), 4), ((13, 194), 4.6)],
+    [((-16, 44), 7), ((0, 42), 9), ((16, 44), 7)],
+]
+_POSES: Mapping[PoseName, tuple[Point, list[_Chain]]] = {
+    "n": (
+        (0, 14),
+        [
+            *_STANDING,
+            [((-22, 45), 6.4), ((-24.5, 74), 5), ((-25.5, 103), 3.6), ((-25.5, 115), 3)],
+            [((22, 45), 6.4), ((24.5, 74), 5), ((25.5, 103), 3.6), ((25.5, 115), 3)],
+        ],
+    ),
+    "t": (
+        (0, 14),
+        [
+            *_STANDING,
+            [((-20, 44), 6.4), ((-49, 44), 5), ((-76, 44), 3.6), ((-89, 44), 3)],
+            [((20, 44), 6.4), ((49, 44), 5), ((76, 44), 3.6), ((89, 44), 3)],
+        ],
+    ),
+    "bow": (
+        (-47, 57),
+        [
+            [((-37, 66), 5.5), ((-24, 77), 12.5), ((4, 101), 12.5), ((14, 107), 12)],
+            [((13, 108), 10.5), ((-12, 143), 7), ((14, 178), 4.2)],
+            [((14, 178), 4.2), ((2, 193), 3.6), ((-6, 195.5), 3)],
+            [((-28, 78), 6.6), ((-50, 98), 5), ((-76, 106), 3.6), ((-89, 107), 2.8)],
+        ],
+    ),
+    "sit": (
+        (0, 46),
+        [
+            [((1, 62), 5.5), ((3, 88), 12.5), ((5, 128), 12.5)],
+            [((5, 130), 10.5), ((-36, 133), 7.5), ((-37, 184), 4.4)],
+            [((-37, 190), 4), ((-52, 195), 3.4)],
+            [((3, 76), 6.4), ((8, 104), 5), ((2, 130), 3.6), ((-3, 140), 3)],
+        ],
+    ),
+}
+
+
+@cache
+def pose_outline(pose: PoseName) -> QPainterPath:
+    """Return a person in a pose; bow and sitting are seen from the left side."""
+    (x, y), chains = _POSES[pose]
+    outline = QPainterPath()
+    outline.addEllipse(QPointF(x, y), 10.5, 13.0)
+    for chain in chains:
+        for (a, wide), (b, narrow) in pairwise(chain):
+            outline = outline.united(limb(a, b, wide, narrow))
+    return outline.simplified()
+
+
+@cache
+def pose_lines(pose: PoseName) -> QPainterPath:
+    """Return the floor, the chair and the arms in front of the trunk: lines over the outline."""
+    lines = QPainterPath(QPointF(-60, 200))
+    lines.lineTo(60, 200)
+    if pose == "sit":
+        lines.addPolygon(QPolygonF([QPointF(32, 92), QPointF(28, 146), QPointF(-20, 146)]))
+        for x in (25, -14):
+            lines.moveTo(x, 146)
+            lines.lineTo(x, 200)
+    return lines
+
+
+def fitted(room: QRectF, width: float = WIDTH) -> tuple[float, QPointF]:
+    """Return the scale at which a person fits into ``room``, and where the middle of the head's top comes to lie."""
+    scale = max(min(room.height() / HEIGHT, room.width() / width), 0.1)
+    return scale, QPointF(room.center().x(), room.center().y() - scale * HEIGHT / 2)
