@@ -8,6 +8,7 @@ from pathlib import Path
 import msgspec
 import numpy as np
 
+from studio.core.body import Place
 from studio.core.errors import FolderNotWritable, NotATake, TakeFileError
 from studio.storage.facts import clean
 from studio.storage.session_folder import list_takes
@@ -34,6 +35,10 @@ class TakeSummary:
     """s, from the first to the last kept sample."""
     samples: int = 0
     sensors: int = 0
+    frame_s: float = math.nan
+    """s, nominal, of the fastest sensor; NaN when no sensor tells."""
+    places: tuple[Place, ...] = ()
+    """Where sensors sat, in the order of Table 1."""
     lost: float = math.nan
     """Share of the samples that were expected and are not there, 0…1; NaN when it cannot be told."""
     recovered: bool = False
@@ -73,7 +78,8 @@ def summarise(folder: Path) -> TakeSummary:
         return replace(bare, refusal=NotATake(str(folder)))
     recorded = _recorded(bare, ends)
     document, _ = load_document(folder, recorded.name, repair=False)
-    return replace(recorded, name=clean(document.name), notes=document.notes, verdict=document.verdict)
+    places = recorded.places if document.setup is None else document.setup.assignment.places()
+    return replace(recorded, name=clean(document.name), notes=document.notes, verdict=document.verdict, places=places)
 
 
 def keep_summary(summary: TakeSummary) -> None:
@@ -101,6 +107,7 @@ def _recorded(bare: TakeSummary, ends: Ends) -> TakeSummary:
         samples = int(ends.last["sequence"].max()) + 1 if len(ends.last) else 0
     expected = sum(_expected(ends, channel, duration) for channel in ends.sensors) if samples else 0.0
     known = ends.identity
+    frames = [record.info.frame_s for record in ends.sensors.values() if record.info.frame_s > 0]
     return replace(
         bare,
         person=clean(known.person) or bare.person if known else bare.person,
@@ -109,6 +116,8 @@ def _recorded(bare: TakeSummary, ends: Ends) -> TakeSummary:
         duration_s=duration,
         samples=samples,
         sensors=len(ends.sensors),
+        frame_s=min(frames, default=math.nan),
+        places=known.setup.assignment.places() if known else (),
         lost=min(max(1.0 - samples / expected, 0.0), 1.0) if expected > 0 else math.nan,
         recovered=ends.recovered,
     )

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from studio.analysis.ledger import ledger
+from studio.core.body import Place
 from studio.core.errors import NotATake, WrittenByNewerStudio
 from studio.core.take import Take
 from studio.storage.encoder import TakeEncoder
@@ -23,7 +24,7 @@ from studio.storage.take_reader import read_take
 from studio.storage.take_store import write_take
 from studio.storage.take_summary import TakeSummary, keep_summary, summaries, summarise
 from tests.export.small_take import small_take
-from tests.storage.recordings import SETUP, START, TAGS, info, samples, start_writing
+from tests.storage.recordings import RATE, SETUP, START, TAGS, info, samples, start_writing
 
 MUTANTS = 300
 
@@ -68,6 +69,8 @@ def test_a_finished_take_is_summed_up_as_it_would_be_read(tmp_path: Path) -> Non
     assert (summary.samples, summary.sensors) == (report.samples, len(take.streams))
     assert summary.lost == pytest.approx(share_lost(take))
     assert 0.1 < summary.lost < 0.2
+    assert summary.frame_s == 1 / RATE
+    assert summary.places == (Place.PELVIS, Place.LEFT_THIGH)
     assert not summary.recovered
     assert summary.refusal is None
 
