@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from PySide6.QtCore import QSignalBlocker, Qt
+from PySide6.QtCore import QSignalBlocker, QSize, Qt
 from PySide6.QtGui import QKeySequence, QResizeEvent
 from PySide6.QtWidgets import (
     QComboBox,
@@ -28,8 +28,16 @@ from studio.ui.views.body_map import BodyMap
 
 PANEL = 380  # px at 100 % text
 SHARE = 0.52  # of the page that the panel may take when text is large
-LIST_ROWS = 5  # tags that are seen without scrolling
+LIST_ROWS = 3  # tags that are seen without scrolling
 SENSOR = Qt.ItemDataRole.UserRole
+
+
+class TagList(QListWidget):
+    """Content with a few rows; what is left of the page makes it longer."""
+
+    def sizeHint(self) -> QSize:  # noqa: N802 (Qt's name)
+        """Return the smallest size."""
+        return QSize(super().sizeHint().width(), self.minimumHeight())
 
 
 class AssignPage(QWidget):
@@ -71,8 +79,7 @@ class AssignPage(QWidget):
         """Take over colours and text size."""
         self.map.restyle()
         self._fit_panel()
-        row = self._theme.pixels("body") * 1.4 + 2 * GRID
-        self.tags.setMinimumHeight(round(LIST_ROWS * row))
+        self._fit_list()
 
     def refresh(self) -> None:
         """Show what the model says."""
@@ -100,6 +107,12 @@ class AssignPage(QWidget):
         wanted = round(PANEL * max(self._theme.text_scale, 1.0))
         self._panel.setFixedWidth(min(wanted, round(self.width() * SHARE)))
 
+    def _fit_list(self) -> None:
+        count = self.tags.count()
+        row = max(self.tags.sizeHintForRow(0), self._theme.pixels("body")) if count else 0
+        self.tags.setMinimumHeight(min(count, LIST_ROWS) * row + GAP)
+        self.tags.setMaximumHeight(count * row + GAP)
+
     def _build(self) -> None:
         self._panel = QScrollArea(self)
         self._panel.setWidgetResizable(True)
@@ -116,6 +129,7 @@ class AssignPage(QWidget):
         column.addWidget(self._build_card())
         column.addSpacing(GAP)
         self._build_tools(column)
+        column.addStretch(1)
         self._panel.setWidget(inside)
         page = QHBoxLayout(self)
         page.setContentsMargins(0, 0, 0, 0)
@@ -129,14 +143,16 @@ class AssignPage(QWidget):
     def _build_tags(self, column: QVBoxLayout) -> None:
         self.summary = self._label("section")
         self.hint = self._label("muted")
-        self.tags = QListWidget(self)
+        self.tags = TagList(self)
         self.tags.setAccessibleName(self.tr("Tags without a place"))
+        self.tags.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.tags.setTextElideMode(Qt.TextElideMode.ElideMiddle)
         self.tags.itemClicked.connect(self._choose_tag)
         self.tags.itemActivated.connect(self._choose_tag)
         self.no_tags = self._label("muted")
         column.addWidget(self.summary)
         column.addWidget(self.hint)
-        column.addWidget(self.tags, 1)
+        column.addWidget(self.tags, 100)
         column.addWidget(self.no_tags)
         self.move_one = self._button(self.tr("Move one sensor"), self._toggle_moving)
         self.move_one.setCheckable(True)
@@ -231,6 +247,7 @@ class AssignPage(QWidget):
                 item.setText(self._tag_words(known))
                 item.setToolTip(str(known.sensor))
                 item.setSelected(known.sensor == self._model.sensor)
+        self._fit_list()
         self.tags.setVisible(bool(free))
         self.no_tags.setVisible(not free)
         nobody = not self._model.assignment.sensors
@@ -270,8 +287,12 @@ class AssignPage(QWidget):
             return self.tr("Move the tag for: {place}. It goes to the place that pulses.").format(place=name)
         if model.place is not None:
             name = self._words[model.place].name
-            text = self.tr("{place}: now choose the place to exchange with.") if model.is_exchanging else ""
-            return (text or self.tr("{place}: now choose a tag.")).format(place=name)
+            text = self.tr("{place}: now choose a tag.")
+            if model.is_exchanging:
+                text = self.tr("{place}: now choose the place to exchange with.")
+            elif not model.unassigned:
+                text = self.tr("{place}: no tag is free.")
+            return text.format(place=name)
         if model.sensor is not None:
             chosen = next((known for known in model.unassigned if known.sensor == model.sensor), None)
             return self.tr("{tag}: now choose its place.").format(tag=chosen.name if chosen else model.sensor)

@@ -18,7 +18,7 @@ Point = tuple[float, float]
 
 # Of the right half as seen from behind; the left half is its mirror.
 SPOTS: Mapping[Place, Point] = {
-    Place.HEAD: (0.0, 13.0),
+    Place.HEAD: (0.0, 7.0),
     Place.CHEST: (0.0, 50.0),
     Place.RIGHT_UPPER_ARM: (29.5, 60.0),
     Place.RIGHT_FOREARM: (39.5, 88.0),
@@ -47,9 +47,9 @@ def silhouette() -> QPainterPath:
     body = body.united(limb((0, 24), (0, 34), 5.5, 6.5)).united(_torso())
     for side in (-1, 1):
         arm = [((23.0, 42.5), 6.8), ((32.5, 71.0), 5.0), ((41.5, 97.0), 3.7)]
-        hand = [((42.5, 99.0), 4.2), ((48.0, 113.0), 2.6)]
-        leg = [((9.6, 98.0), 9.6), ((12.4, 141.0), 6.4), ((15.0, 183.0), 4.0)]
-        foot = [((15.4, 187.0), 4.2), ((19.0, 194.0), 5.0)]
+        hand = [((41.5, 97.0), 3.7), ((45.2, 105.5), 4.3), ((48.2, 113.5), 2.8)]
+        leg = [((9.5, 104.0), 9.5), ((12.4, 141.0), 6.4), ((15.0, 183.0), 4.0)]
+        foot = [((15.0, 183.0), 4.0), ((17.0, 190.5), 4.8), ((19.5, 194.5), 4.6)]
         for chain in (arm, hand, leg, foot):
             for (a, wide), (b, narrow) in pairwise(chain):
                 body = body.united(limb((side * a[0], a[1]), (side * b[0], b[1]), wide, narrow))
@@ -62,7 +62,7 @@ def _torso() -> QPainterPath:
         ((9, 33), (20, 35), (25.5, 39)),
         ((27, 46), (20.5, 55), (19.5, 62)),
         ((18, 70), (14.5, 74), (15, 80)),
-        ((15.5, 88), (19, 92), (19.2, 100)),
+        ((15.4, 87), (19.2, 89), (19.2, 100)),
         ((19, 106), (8, 109), (0, 108)),
     ]
     for c1, c2, end in right:
@@ -85,14 +85,15 @@ def details(*, facing: bool) -> QPainterPath:
             lines.quadTo(side * control[0], control[1], side * end[0], end[1])
 
     if facing:
-        curve((3.4, 11.0), (4.4, 10.2), (5.4, 11.0))
-        curve((0.0, 12.5), (-2.6, 18.0), (1.0, 17.6), both=False)
-        curve((-3.4, 21.5), (0.0, 23.6), (3.4, 21.5), both=False)
+        curve((3.2, 15.0), (4.4, 14.0), (5.6, 15.0))
+        curve((0.0, 15.5), (-2.4, 19.6), (0.8, 19.4), both=False)
+        curve((-3.0, 22.4), (0.0, 24.2), (3.0, 22.4), both=False)
         curve((4.0, 36.5), (12.0, 38.5), (20.0, 40.0))
         curve((9.0, 139.0), (12.4, 143.5), (15.8, 139.0))
     else:
-        curve((-9.3, 17.0), (0.0, 24.0), (9.3, 17.0), both=False)
-        curve((0.0, 34.0), (0.0, 60.0), (0.0, 101.0), both=False)
+        curve((-9.6, 18.0), (0.0, 25.5), (9.6, 18.0), both=False)
+        curve((0.0, 33.0), (0.0, 37.0), (0.0, 42.0), both=False)
+        curve((0.0, 67.0), (0.0, 74.0), (0.0, 82.0), both=False)
         curve((6.5, 45.0), (14.0, 52.0), (9.5, 61.0))
         curve((2.5, 107.5), (9.0, 112.5), (16.5, 108.0))
         curve((9.5, 143.0), (12.4, 140.0), (15.6, 143.0))
@@ -184,9 +185,8 @@ def pose_outline(pose: PoseName) -> QPainterPath:
 
 @cache
 def pose_lines(pose: PoseName) -> QPainterPath:
-    """Return the floor, the chair and the arms in front of the trunk: lines over the outline."""
-    lines = QPainterPath(QPointF(-60, 200))
-    lines.lineTo(60, 200)
+    """Return what belongs to a pose besides the person: the chair."""
+    lines = QPainterPath()
     if pose == "sit":
         lines.addPolygon(QPolygonF([QPointF(32, 92), QPointF(28, 146), QPointF(-20, 146)]))
         for x in (25, -14):

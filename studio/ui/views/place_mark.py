@@ -10,7 +10,8 @@ from studio.ui.models.place_words import PlaceWords
 from studio.ui.style_sheet import mixed
 from studio.ui.theme import FOCUS, GRID, Theme
 
-SMALLEST = 36  # px, of the target
+SMALLEST = 28  # px, of the badge; with its margin a target of 40
+MARGIN = 6  # px around the badge, for focus ring and warning
 ARROWS = {
     Qt.Key.Key_Left: (-1, 0),
     Qt.Key.Key_Right: (1, 0),
@@ -56,7 +57,7 @@ class PlaceMark(QAbstractButton):
 
     def restyle(self) -> None:
         """Take over colours and text size."""
-        side = max(SMALLEST, 2 * self._theme.pixels("body") + 2 * GRID)
+        side = max(SMALLEST, round(1.6 * self._theme.pixels("body")) + GRID) + 2 * MARGIN
         self.resize(side, side)
         self._tell()
         self.update()
@@ -90,7 +91,7 @@ class PlaceMark(QAbstractButton):
         """Paint the badge with the tag's number."""
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        badge = QRectF(self.rect()).adjusted(4, 4, -4, -4)
+        badge = QRectF(self.rect()).adjusted(MARGIN, MARGIN, -MARGIN, -MARGIN)
         self._paint_badge(painter, self._shape(badge))
         self._paint_number(painter, badge)
         if self.look.state is PlaceState.WARNING:
@@ -98,7 +99,7 @@ class PlaceMark(QAbstractButton):
         if self.hasFocus():
             painter.setBrush(Qt.BrushStyle.NoBrush)
             painter.setPen(QPen(QColor(self._theme.tokens.accent), FOCUS))
-            painter.drawPath(self._shape(QRectF(self.rect()).adjusted(1, 1, -1, -1)))
+            painter.drawPath(self._shape(QRectF(self.rect()).adjusted(3, 3, -3, -3)))
         painter.end()
 
     def _shape(self, room: QRectF) -> QPainterPath:
