@@ -136,7 +136,7 @@ class SensorTableModel(QAbstractTableModel):
                 del self._rows[at]
                 self.endRemoveRows()
         known = {row.sensor: row for row in self._rows}
-        for sensor in shown:
+        for sensor in sorted(shown, key=lambda one: (infos[one].number or math.inf, infos[one].label, one)):
             row = known.get(sensor) or self._insert(_Row(sensor, infos[sensor], health[sensor]))
             row.info, row.health, row.place = infos[sensor], health[sensor], places.get(sensor)
             row.counts.append((now, row.health.received, row.health.lost))
@@ -328,7 +328,7 @@ class SensorTableModel(QAbstractTableModel):
         young = not row.counts or row.counts[-1][0] - row.counts[0][0] < SETTLED
         if row.health.silent_for < QUIET and not young and rate < SLOW / row.info.frame_s:
             return self.tr("▲ {n:.1f}").format(n=rate), State.WARN
-        return f"{rate:.1f}", State.PLAIN
+        return f"{rate:.1f}", State.PLAIN if rate > 0 else State.MUTED
 
     def _loss(self, row: _Row) -> tuple[str, State]:
         loss = row.loss()
@@ -348,6 +348,8 @@ class SensorTableModel(QAbstractTableModel):
         return ("–", State.MUTED) if math.isnan(warmth) else (f"{warmth:.0f}", State.PLAIN)
 
     def _still(self, row: _Row) -> tuple[str, State]:
+        if row.sensor == self._moved:
+            return self.tr("this one"), State.PLAIN
         if row.is_still is None or row.health.silent_for >= QUIET:
             return "–", State.MUTED
         return (self.tr("still"), State.PLAIN) if row.is_still else (self.tr("moves"), State.MUTED)

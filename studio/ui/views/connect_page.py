@@ -21,11 +21,12 @@ from studio.acquisition.health import HealthSnapshot
 from studio.capture.live_buffer import Window
 from studio.core.body import Place
 from studio.core.sample import SensorId, SensorInfo
+from studio.ui.icons import pixmap
 from studio.ui.models.rest_watch import RestWatch
 from studio.ui.models.sensor_motion import shaken, speed_of
 from studio.ui.models.sensor_table import SensorTableModel
 from studio.ui.style_sheet import set_look
-from studio.ui.theme import FORM_WIDTH, GAP, GAP_PAGE, GAP_WIDE, Theme
+from studio.ui.theme import CONTROL, FORM_WIDTH, GAP, GAP_PAGE, GAP_WIDE, Theme
 from studio.ui.views.announcement import announce
 from studio.ui.views.sensor_list import SensorList
 from studio.ui.views.sensor_panel import SensorPanel
@@ -55,6 +56,7 @@ class ConnectPage(QWidget):
         super().__init__(parent)
         self._theme = theme
         self._since: float | None = None
+        self._is_connected = False
         self._now = 0.0
         self._moved_at = -math.inf
         self.sensors = SensorTableModel(self)
@@ -63,10 +65,11 @@ class ConnectPage(QWidget):
         self.panel = SensorPanel(theme, self)
         self.retry = QPushButton(self.tr("Try again"), self)
         self.simulator = QPushButton(self.tr("Use the simulator"), self)
+        self.instead = QPushButton(self.tr("Use the simulator"), self)
         self._status, self._rest_words, self._rest_count = QLabel(self), QLabel(self), QLabel(self)
         self._refusal, self._empty = QFrame(self), QFrame(self)
         self._said = [QLabel(self._refusal) for _ in range(3)]
-        self._empty_title, self._empty_text = QLabel(self._empty), QLabel(self._empty)
+        self._empty_icon, self._empty_title, self._empty_text = (QLabel(self._empty) for _ in range(3))
         self._build()
         self._connect()
         self.show_idle()
@@ -99,7 +102,7 @@ class ConnectPage(QWidget):
         self._empty_title.setText(self.tr("No sensors yet"))
         self._empty_text.setText(
             self.tr(
-                "Plug the receiver in, switch the tags on, and press Connect.\n"
+                "Plug the receiver in, switch the tags on, and press Connect. "
                 "Without tags, the simulator shows everything the studio does."
             )
         )
@@ -116,8 +119,9 @@ class ConnectPage(QWidget):
     def show_connected(self, source: str) -> None:
         """A source is open."""
         self.choice.set_source(source)
-        self._show(is_open=True, status=self.tr("✔ Connected"))
-        set_look(self._status, tone="good")
+        self._show(is_open=True, status="")
+        self._is_connected = True
+        self._say_count()
         self._empty_title.setText(self.tr("Connected, and no sensor is heard"))
         self._empty_text.setText(
             self.tr("Switch a tag on and keep it within 3 m of the receiver. Charge it when its light stays dark.")
@@ -145,6 +149,7 @@ class ConnectPage(QWidget):
         sensor = self.selected()
         if sensor is not None:
             self.panel.set_title(self.sensors.title_of(sensor))
+        self._say_count()
         self._show_body()
 
     def show_rest(self, watch: RestWatch) -> None:
@@ -184,13 +189,12 @@ class ConnectPage(QWidget):
     def restyle(self) -> None:
         """Take over colours and text size."""
         width = round(FORM_WIDTH * max(self._theme.text_scale, 1.0))
-        for label in (*self._said, self._empty_text):
+        for label in self._said:
             label.setMaximumWidth(width)
+        self._empty_icon.setPixmap(pixmap("connect", self._theme.tokens.muted, 2 * CONTROL))
         self.choice.restyle()
         self.list.restyle()
         self.panel.restyle()
-        rows = max(6, min(8, self.sensors.rowCount()))
-        self.list.setMinimumHeight(self.list.verticalHeader().defaultSectionSize() * rows // 2)
 
     def _build(self) -> None:
         title = QLabel(self.tr("Connect"), self)
@@ -209,6 +213,8 @@ class ConnectPage(QWidget):
         column.addWidget(self._refusal)
         self._build_empty()
         column.addWidget(self._empty, 1)
+        self._rest = self._build_rest()
+        column.addWidget(self._rest)
         self._body = self._build_body()
         column.addWidget(self._body, 1)
         # Large text needs more height than a small window has.
@@ -249,32 +255,37 @@ class ConnectPage(QWidget):
     def _build_empty(self) -> None:
         self._empty_title.setProperty("role", "section")
         self._empty_text.setProperty("role", "muted")
-        column = QVBoxLayout(self._empty)
-        column.setSpacing(GAP)
-        column.addStretch(1)
-        for label in (self._empty_title, self._empty_text):
+        self.instead.setAccessibleName(self.tr("Use the simulator"))
+        inside = QVBoxLayout()
+        inside.setSpacing(GAP)
+        for label in (self._empty_icon, self._empty_title, self._empty_text):
             label.setAlignment(Qt.AlignmentFlag.AlignHCenter)
-            label.setWordWrap(True)
-            column.addWidget(label, 0, Qt.AlignmentFlag.AlignHCenter)
+            inside.addWidget(label)
+        self._empty_text.setWordWrap(True)
+        self._empty_title.setWordWrap(True)
+        inside.addSpacing(GAP)
+        inside.addWidget(self.instead, 0, Qt.AlignmentFlag.AlignHCenter)
+        column = QVBoxLayout(self._empty)
+        column.addStretch(1)
+        column.addLayout(inside)
         column.addStretch(2)
 
-    def _build_body(self) -> QSplitter:
-        rest = QHBoxLayout()
+    def _build_rest(self) -> QWidget:
+        row = QWidget(self)
+        rest = QHBoxLayout(row)
+        rest.setContentsMargins(0, 0, 0, 0)
         rest.setSpacing(GAP_WIDE)
         self._rest_words.setWordWrap(True)
         self._rest_count.setProperty("role", "muted")
         rest.addWidget(self._rest_words, 1)
         rest.addWidget(self._rest_count)
-        top = QWidget(self)
-        upper = QVBoxLayout(top)
-        upper.setContentsMargins(0, 0, 0, GAP)
-        upper.setSpacing(GAP)
-        upper.addLayout(rest)
-        upper.addWidget(self.list, 1)
+        return row
+
+    def _build_body(self) -> QSplitter:
         body = QSplitter(Qt.Orientation.Vertical, self)
         body.setChildrenCollapsible(False)
-        body.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
-        body.addWidget(top)
+        body.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Ignored)
+        body.addWidget(self.list)
         body.addWidget(self.panel)
         body.setStretchFactor(0, 3)
         body.setStretchFactor(1, 2)
@@ -291,9 +302,10 @@ class ConnectPage(QWidget):
         self.panel.blink_asked.connect(self._blink)
         self.retry.clicked.connect(self._try_again)
         self.simulator.clicked.connect(self._use_simulator)
+        self.instead.clicked.connect(self._use_simulator)
 
     def _show(self, *, is_open: bool, status: str) -> None:
-        self._since = None
+        self._since, self._is_connected = None, False
         self.choice.show_open(is_open=is_open)
         self._status.setText(status)
         set_look(self._status, tone="", role="muted")
@@ -302,11 +314,21 @@ class ConnectPage(QWidget):
 
     def _show_body(self) -> None:
         has_sensors = self.sensors.rowCount() > 0
+        self._rest.setVisible(has_sensors)
         self._body.setVisible(has_sensors)
         self._empty.setVisible(not has_sensors)
         refused = not self._refusal.isHidden()
-        self._empty_title.setVisible(not refused)
-        self._empty_text.setVisible(not refused)
+        for part in (self._empty_icon, self._empty_title, self._empty_text, self.instead):
+            part.setVisible(not refused)
+        self.instead.setVisible(not refused and not self.choice.is_open)
+
+    def _say_count(self) -> None:
+        if not self._is_connected:
+            return
+        count = self.sensors.rowCount()
+        words = self.tr("✔ Connected, {n} sensors") if count > 1 else self.tr("✔ Connected, one sensor")
+        self._status.setText(words.format(n=count) if count else self.tr("✔ Connected"))
+        set_look(self._status, tone="good")
 
     def _say_seconds(self) -> None:
         seconds = 0 if self._since is None else int(self._now - self._since)

@@ -1,7 +1,7 @@
 """The table of sensors: states in colour beside their words, a bar while a rest is measured."""
 
 from PySide6.QtCore import QItemSelectionModel, QModelIndex, QPersistentModelIndex, QRectF, Qt, Signal
-from PySide6.QtGui import QColor, QFontMetrics, QPainter
+from PySide6.QtGui import QColor, QFontMetrics, QPainter, QResizeEvent, QShowEvent
 from PySide6.QtWidgets import (
     QAbstractItemView,
     QHeaderView,
@@ -24,24 +24,25 @@ from studio.ui.models.sensor_table import (
     State,
 )
 from studio.ui.style_sheet import mixed
-from studio.ui.theme import CONTROL, GAP, GRID, Theme
+from studio.ui.theme import CONTROL, GAP, GAP_WIDE, GRID, Theme
 
 WIDEST = {
     Column.NUMBER: "00",
-    Column.NAME: "Kinetag 0000000",
+    Column.NAME: "Kinetag 00",
     Column.PLACE: "■ right upper arm",
     Column.RATE: "▲ 100.0",
     Column.LOSS: "▲ 75.0",
     Column.BATTERY: "▲ 100",
     Column.TEMPERATURE: "-00",
-    Column.STILL: "moves",
-    Column.HEARD: "✖ 00 min ago",
+    Column.STILL: "this one",
+    Column.HEARD: "✖ 00 s ago",
     Column.LINK: "▂▄▆█",
     Column.OFFSET: "waits for rest",
 }
 """What each column has room for; longer names and places are shortened."""
 BAR = 4  # px
-MOVED = 0.30  # of the accent in the ground of the line that lights up
+LEAST_ROWS = 4  # seen at any text size
+MOVED = 0.45  # of the accent in the ground of the line that lights up
 
 Index = QModelIndex | QPersistentModelIndex
 
@@ -56,6 +57,7 @@ class SensorList(QTableView):
         super().__init__(parent)
         self._theme = theme
         self._model = model
+        self._rooms: dict[Column, int] = {}
         self.setModel(model)
         self.setItemDelegate(_Cell(theme, self))
         self.setAccessibleName(self.tr("Sensors"))
@@ -72,7 +74,6 @@ class SensorList(QTableView):
         header.setSectionsClickable(False)
         header.setMinimumSectionSize(CONTROL)
         header.setSectionResizeMode(QHeaderView.ResizeMode.Fixed)
-        header.setSectionResizeMode(Column.NAME, QHeaderView.ResizeMode.Stretch)
         self.selectionModel().currentRowChanged.connect(self._tell)
         model.rowsInserted.connect(self._select_first)
         model.rowsRemoved.connect(self._select_first)
@@ -105,8 +106,29 @@ class SensorList(QTableView):
         for column, widest in WIDEST.items():
             head = str(self._model.headerData(column, Qt.Orientation.Horizontal))
             room = max(cells.horizontalAdvance(widest), heads.horizontalAdvance(head)) + 2 * GAP + GRID
-            self.horizontalHeader().resizeSection(column, room)
+            self._rooms[column] = room
+        self._share_width()
+        header = self.horizontalHeader()
+        header.setFixedHeight(heads.height() + 3 * GRID)
+        self.setMinimumHeight(header.height() + LEAST_ROWS * self.verticalHeader().defaultSectionSize() + GAP_WIDE)
         self.viewport().update()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 (Qt's name)
+        """Give names the room that is left; below their least the table scrolls."""
+        super().resizeEvent(event)
+        self._share_width()
+
+    def showEvent(self, event: QShowEvent) -> None:  # noqa: N802 (Qt's name)
+        """Show the first lines, or the selected one when it is further down."""
+        super().showEvent(event)
+        self.scrollToTop()
+        self.scrollTo(self.currentIndex())
+
+    def _share_width(self) -> None:
+        others = sum(self._rooms.values()) - self._rooms[Column.NAME]
+        for column, room in self._rooms.items():
+            left = self.viewport().width() - others
+            self.horizontalHeader().resizeSection(column, max(room, left) if column is Column.NAME else room)
 
     def _select_first(self) -> None:
         if not self.currentIndex().isValid() and self._model.rowCount():

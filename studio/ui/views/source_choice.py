@@ -37,7 +37,8 @@ class SourceChoice(QWidget):
     def __init__(self, theme: Theme, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._theme = theme
-        self._is_open = False
+        self.is_open = False
+        """Whether the button disconnects."""
         self.kinds = QButtonGroup(self)
         self.ports, self.scripts, self.takes = QComboBox(self), QComboBox(self), QComboBox(self)
         self.refresh = QPushButton(self.tr("Look again"), self)
@@ -79,7 +80,7 @@ class SourceChoice(QWidget):
 
     def show_open(self, *, is_open: bool) -> None:
         """Offer to disconnect instead of to connect."""
-        self._is_open = is_open
+        self.is_open = is_open
         set_look(self.go, kind="" if is_open else "primary")
         for button in self.kinds.buttons():
             button.setEnabled(not is_open)
@@ -182,14 +183,14 @@ class SourceChoice(QWidget):
         self._show_button()
 
     def _show_button(self) -> None:
-        self.go.setText(self.tr("Disconnect") if self._is_open else self.tr("Connect"))
+        self.go.setText(self.tr("Disconnect") if self.is_open else self.tr("Connect"))
         self.go.setAccessibleName(self.go.text())
-        possible = self._is_open or bool(self.kinds.checkedId() >= 0 and self.source())
+        possible = self.is_open or bool(self.kinds.checkedId() >= 0 and self.source())
         self.go.setEnabled(possible)
         self.go.setToolTip("" if possible else self._boxes()[max(self.kinds.checkedId(), 0)].currentText())
 
     def _tell(self) -> None:
-        if self._is_open:
+        if self.is_open:
             self.left.emit()
             return
         self.chosen.emit(self.source())

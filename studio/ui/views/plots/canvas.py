@@ -70,7 +70,7 @@ class PlotCanvas(pg.GraphicsView):
 
     def is_seen(self) -> bool:
         """Return whether any of the plot is on the screen."""
-        return self.isVisible() and not self.visibleRegion().isEmpty()
+        return self.isVisible() and not self.viewport().visibleRegion().isEmpty()
 
     def sizeHint(self) -> QSize:  # noqa: N802 (Qt's name)
         """Return room to read it."""
@@ -174,7 +174,7 @@ class PlotCanvas(pg.GraphicsView):
             painter.drawText(room, Qt.AlignmentFlag.AlignCenter, tick.words)
         painter.setPen(numbers)
         words = painter.fontMetrics().elidedText(self._title, Qt.TextElideMode.ElideRight, self.width() - 2 * GAP)
-        painter.drawText(QRectF(GAP, 0, self.width() - GAP, height), Qt.AlignmentFlag.AlignVCenter, words)
+        painter.drawText(QRectF(GAP, GRID, self.width() - GAP, height), Qt.AlignmentFlag.AlignVCenter, words)
 
     def drawForeground(self, painter: QPainter, rect: QRectF) -> None:  # noqa: N802 (Qt's name)
         """Paint marks, labels and the focus ring."""
@@ -208,7 +208,7 @@ class PlotCanvas(pg.GraphicsView):
         numbers = max((metrics.horizontalAdvance(tick.words) for tick in self._y_ticks), default=0.0)
         left = max(numbers, metrics.horizontalAdvance("-2000")) + 2 * GAP
         right = metrics.horizontalAdvance(self._widest_label) + GAP + GRID
-        top = metrics.height() * (1.6 if self._title else 0.6)
+        top = metrics.height() * (1.6 if self._title else 0.6) + GRID
         bottom = metrics.height() + MARKS + GRID
         size = self.viewport().size()
         width, height = max(size.width() - left - right, 8.0), max(size.height() - top - bottom, 8.0)
