@@ -4,6 +4,7 @@ import math
 from collections.abc import Mapping, Sequence
 
 from PySide6.QtCore import Qt, Signal
+from PySide6.QtGui import QShowEvent
 from PySide6.QtWidgets import (
     QFrame,
     QHBoxLayout,
@@ -195,6 +196,16 @@ class ConnectPage(QWidget):
         self.choice.restyle()
         self.list.restyle()
         self.panel.restyle()
+        self._need_room()
+
+    def showEvent(self, event: QShowEvent) -> None:  # noqa: N802 (Qt's name)
+        """Take the room the fonts need, which are known now."""
+        super().showEvent(event)
+        self._need_room()
+
+    def _need_room(self) -> None:
+        # Without it the splitter is as high as its parts wish, and the page scrolls where it need not.
+        self._body.setMinimumHeight(self._body.minimumSizeHint().height())
 
     def _build(self) -> None:
         title = QLabel(self.tr("Connect"), self)
