@@ -3,11 +3,12 @@
 import asyncio
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 from studio.capture.live_session import LiveSession
 from studio.capture.setups import setup_for
 from studio.capture.sources import open_source
-from studio.core.errors import FolderNotWritable, NoData, WrittenByNewerStudio
+from studio.core.errors import FolderNotWritable, NoData, StudioError, WrittenByNewerStudio
 from studio.storage.person_file import Person, load_person, save_person
 from studio.storage.take_file import Saved
 
@@ -24,7 +25,15 @@ class RecordRequest:
     name: str
 
 
-async def record(request: RecordRequest, session: LiveSession, stop: asyncio.Event) -> Saved:
+class Recorded(NamedTuple):
+    """A take that is on disk, and why it is shorter than it was to be."""
+
+    saved: Saved
+    stopped_by: StudioError | None
+    """DiskFull, for one; None when it has its length or was stopped by hand."""
+
+
+async def record(request: RecordRequest, session: LiveSession, stop: asyncio.Event) -> Recorded:
     """Record one take and return when it has been read back. ``stop`` ends it early; what was kept is kept.
 
     Raises
@@ -54,7 +63,7 @@ async def record(request: RecordRequest, session: LiveSession, stop: asyncio.Eve
         raise NoData(request.source, 0)
     if opened.setup is None:
         _remember(request, session, person)
-    return saved
+    return Recorded(saved, recording.writer.failure)
 
 
 def _remember(request: RecordRequest, session: LiveSession, person: Person) -> None:

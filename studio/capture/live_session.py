@@ -191,7 +191,8 @@ class LiveSession:
         Raises
         ------
         RecordingError
-            What was kept is safe; it could not be ended or did not read back whole.
+            What was kept is safe; it could not be ended or did not read back whole. A disk that filled up while
+            recording is no error here: ``recording.writer.failure`` tells.
         """
         recording, self.recording = self.recording, None
         if recording is None:
@@ -200,7 +201,7 @@ class LiveSession:
         for intake in self._intakes.values():
             if isinstance(intake.link, KnowsTruth):
                 recording.writer.attach("truth", "application/octet-stream", intake.link.truth_attachment())
-        failure: StudioError | None = None
+        failure: StudioError | None = recording.writer.failure
         try:
             return await asyncio.wrap_future(recording.writer.stop())
         except StudioError as error:
@@ -212,9 +213,11 @@ class LiveSession:
     async def finished(self, recording: Recording) -> None:
         """Wait until a recording has its length, can keep nothing more, or its sources have ended."""
         waiting = {asyncio.create_task(e.wait()) for e in (recording.full, self._ended)}
-        _, pending = await asyncio.wait(waiting, return_when=asyncio.FIRST_COMPLETED)
-        for task in pending:
-            task.cancel()
+        try:
+            await asyncio.wait(waiting, return_when=asyncio.FIRST_COMPLETED)
+        finally:
+            for task in waiting:
+                task.cancel()
 
     def mark(self, label: str) -> Mark:
         """Set a marker now."""

@@ -60,10 +60,12 @@ def record(arguments: Namespace) -> None:
     for name in (signal.SIGINT, signal.SIGTERM):
         signal.signal(name, interrupt)
     try:
-        saved = _result(runtime.call(record_take(request, session, stop)))
+        recorded = _result(runtime.call(record_take(request, session, stop)))
     finally:
         runtime.stop()
-    print(saved.folder)
+    print(recorded.saved.folder)
+    if recorded.stopped_by is not None:
+        raise recorded.stopped_by
 
 
 def _tell_of_recovered(folder: Path) -> None:

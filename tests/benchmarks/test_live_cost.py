@@ -37,7 +37,7 @@ async def measured(session, request):
     share = (time.process_time() - used) / (time.perf_counter() - wall)
     assert session.buffer.newest()[1] is not None, "no pose was computed"
     stop.set()
-    return (await recording).folder, share
+    return (await recording).saved.folder, share
 
 
 @pytest.mark.parametrize("rate", [50, 100])

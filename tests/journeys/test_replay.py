@@ -110,7 +110,7 @@ def seen_live(source, library, seconds=math.inf):
     session = LiveSession(pre_roll=math.inf)
     session.buffer = watched = Watched()
     request = RecordRequest(source, seconds, library, "P014", "watched")
-    folder = asyncio.run(record(request, session, asyncio.Event())).folder
+    folder = asyncio.run(record(request, session, asyncio.Event())).saved.folder
     told = [session.events.get() for _ in range(session.events.qsize())]
     (aligned,) = [event for event in told if isinstance(event, Aligned)]  # the N-pose alone tells no heading
     (take, _), zero = read_take(folder), take_zero(folder)
