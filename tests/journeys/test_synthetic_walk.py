@@ -121,7 +121,7 @@ def test_a_single_tag_turns_its_segment_and_has_no_joint(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "script", ["t", "sit", "reach", *(pytest.param(script, marks=pytest.mark.long) for script in ("n", "bow"))]
+    "script", ["t", "sit", *(pytest.param(script, marks=pytest.mark.long) for script in ("n", "bow", "reach"))]
 )
 def test_each_thing_the_performer_does_is_recorded_and_found(tmp_path, script):
     take = recorded(f"synthetic:{script}?speed=max&calibrated=1", 15, tmp_path)
@@ -180,6 +180,7 @@ def test_outages_are_counted_to_the_packet(tmp_path):
         assert account["longest_gap_s"] == pytest.approx(np.diff(numbers).max() * 0.02, abs=0.002)
 
 
+@pytest.mark.long
 def test_tags_with_clocks_of_their_own_are_brought_to_one_time(tmp_path):
     take = recorded("synthetic:walk?speed=max&calibrated=1&skew=50", 26, tmp_path)
 
