@@ -3,12 +3,15 @@
 import shutil
 import sys
 import wave
+from collections.abc import Mapping
 from enum import Enum
 from pathlib import Path
 
 import numpy as np
 from PySide6.QtCore import QObject, QProcess, QTemporaryDir
 from PySide6.QtWidgets import QApplication
+
+from studio.capture.procedures.held_pose import Cue, Kind
 
 SAMPLE_RATE = 22_050  # Hz; five times the highest overtone that matters
 FADE = 0.008  # s; without it a tone begins and ends with a click
@@ -23,6 +26,10 @@ class Tone(Enum):
     FAILURE = (220.0, 0.22, 2, 0.14)
 
 
+TONES: Mapping[Kind, Tone] = {Kind.COUNT: Tone.COUNT, Kind.DONE: Tone.SUCCESS, Kind.FAILED: Tone.FAILURE}
+"""``HOLD`` is silent: it begins where the fourth tone would come."""
+
+
 class Sound(QObject):
     """Plays tones, and never fails: what cannot be played becomes the system's beep, or nothing."""
 
@@ -32,6 +39,11 @@ class Sound(QObject):
         """0…1; 0 is off."""
         self._player = next((found for name in PLAYERS if (found := shutil.which(name))), "")
         self._folder: QTemporaryDir | None = None
+
+    def cue(self, cue: Cue) -> None:
+        """Play what belongs to a cue."""
+        if cue.kind in TONES:
+            self.play(TONES[cue.kind])
 
     def play(self, tone: Tone) -> None:
         """Start a tone and return at once."""

@@ -17,7 +17,7 @@ from studio.ui.views.place_mark import PlaceMark
 
 MARGIN = 20.0  # px around the figure, for the marks of head and feet
 PULSE = 1.2  # s from one ring to the next
-LABEL_ROOM = 4.0  # px between a mark and its name
+LABEL_ROOM = 2.0  # px between a mark and its name
 MIDDLE = (Place.HEAD, Place.CHEST, Place.PELVIS)
 
 
@@ -230,7 +230,7 @@ class BodyFigure(QWidget):
         box = QRectF(self.marks[place].geometry())
         line = self._theme.pixels("caption") * 1.4
         if place in (Place.CHEST, Place.PELVIS):
-            room = QRectF(box.center().x() - 15 * scale, box.bottom() - GRID, 30 * scale, 2.2 * line)
+            room = QRectF(box.center().x() - 15 * scale, box.bottom() - 2 * GRID, 30 * scale, 2.2 * line)
             return room, int(Qt.AlignmentFlag.AlignHCenter | Qt.AlignmentFlag.AlignTop)
         top = box.center().y() - 1.2 * line
         if place is Place.HEAD:
@@ -245,7 +245,7 @@ class BodyFigure(QWidget):
 
     def _paint_halo(self, painter: QPainter, mark: PlaceMark) -> None:
         accent = QColor(self._theme.tokens.accent)
-        middle, radius = QRectF(mark.geometry()).center(), mark.width() / 2 - 3
+        middle, radius = QRectF(mark.geometry()).center(), mark.width() / 2 - 5
         painter.setBrush(Qt.BrushStyle.NoBrush)
         if mark.look.is_selected:
             painter.setPen(QPen(accent, 3))

@@ -39,21 +39,45 @@ def spot(place: Place, *, facing: bool) -> Point:
     return (x if right != facing else -x, y)
 
 
+_Chain = list[tuple[Point, float]]
+"""Joints with their radii."""
+
+_AWAY: list[_Chain] = [
+    [((23.0, 42.5), 6.8), ((32.5, 71.0), 5.0), ((41.5, 97.0), 3.7), ((45.2, 105.5), 4.3), ((48.2, 113.5), 2.8)]
+]
+_HANGING: list[_Chain] = [
+    [((22.5, 43.0), 6.6), ((26.5, 73.0), 5.0), ((28.0, 100.0), 3.7), ((28.0, 108.0), 4.3), ((27.5, 116.5), 2.8)]
+]
+_STRETCHED: list[_Chain] = [
+    [((20.0, 43.0), 6.6), ((50.0, 43.5), 5.0), ((77.0, 43.5), 3.7), ((85.0, 43.5), 4.0), ((93.0, 43.5), 2.6)]
+]
+_LEG: list[_Chain] = [
+    [((9.5, 104.0), 9.5), ((12.4, 141.0), 6.4), ((15.0, 183.0), 4.0)],
+    [((15.0, 183.0), 4.0), ((17.0, 190.5), 4.8), ((19.5, 194.5), 4.6)],
+]
+
+
 @cache
 def silhouette() -> QPainterPath:
-    """Return the outline of a standing person."""
+    """Return the outline of a standing person, the arms a little away from the body."""
+    return _standing(_AWAY)
+
+
+def _standing(arm: list[_Chain]) -> QPainterPath:
     body = QPainterPath()
     body.addEllipse(QPointF(0, 14), 10.5, 13.5)
     body = body.united(limb((0, 24), (0, 34), 5.5, 6.5)).united(_torso())
     for side in (-1, 1):
-        arm = [((23.0, 42.5), 6.8), ((32.5, 71.0), 5.0), ((41.5, 97.0), 3.7)]
-        hand = [((41.5, 97.0), 3.7), ((45.2, 105.5), 4.3), ((48.2, 113.5), 2.8)]
-        leg = [((9.5, 104.0), 9.5), ((12.4, 141.0), 6.4), ((15.0, 183.0), 4.0)]
-        foot = [((15.0, 183.0), 4.0), ((17.0, 190.5), 4.8), ((19.5, 194.5), 4.6)]
-        for chain in (arm, hand, leg, foot):
-            for (a, wide), (b, narrow) in pairwise(chain):
-                body = body.united(limb((side * a[0], a[1]), (side * b[0], b[1]), wide, narrow))
+        for chain in (*arm, *_LEG):
+            body = body.united(_chain([((side * x, y), radius) for (x, y), radius in chain]))
     return body.simplified()
+
+
+def _chain(joints: _Chain) -> QPainterPath:
+    path = QPainterPath()
+    for (a, radius_a), (b, radius_b) in pairwise(joints):
+        path = path.united(limb(a, b, radius_a, radius_b))
+    return path
 
 
 def _torso() -> QPainterPath:
@@ -123,33 +147,8 @@ def limb(a: Point, b: Point, radius_a: float, radius_b: float) -> QPainterPath:
     return path.united(between).united(end)
 
 
-# Chains of joints with their radii. Poses that lean are drawn from the wearer's left, facing left.
-_Chain = list[tuple[Point, float]]
-_STANDING: list[_Chain] = [
-    [((0, 30), 5.5), ((0, 60), 15), ((0, 96), 15)],
-    [((-8, 98), 9), ((-9, 141), 6.4), ((-10, 184), 4.2)],
-    [((8, 98), 9), ((9, 141), 6.4), ((10, 184), 4.2)],
-    [((-10, 188), 4), ((-13, 194), 4.6)],
-    [((10, 188), 4), ((13, 194), 4.6)],
-    [((-16, 44), 7), ((0, 42), 9), ((16, 44), 7)],
-]
-_POSES: Mapping[PoseName, tuple[Point, list[_Chain]]] = {
-    "n": (
-        (0, 14),
-        [
-            *_STANDING,
-            [((-22, 45), 6.4), ((-24.5, 74), 5), ((-25.5, 103), 3.6), ((-25.5, 115), 3)],
-            [((22, 45), 6.4), ((24.5, 74), 5), ((25.5, 103), 3.6), ((25.5, 115), 3)],
-        ],
-    ),
-    "t": (
-        (0, 14),
-        [
-            *_STANDING,
-            [((-20, 44), 6.4), ((-49, 44), 5), ((-76, 44), 3.6), ((-89, 44), 3)],
-            [((20, 44), 6.4), ((49, 44), 5), ((76, 44), 3.6), ((89, 44), 3)],
-        ],
-    ),
+# Seen from the wearer's left, facing left: the middle of the head, then trunk, leg, foot and arm.
+_FROM_THE_SIDE: Mapping[PoseName, tuple[Point, list[_Chain]]] = {
     "bow": (
         (-47, 57),
         [
@@ -165,22 +164,29 @@ _POSES: Mapping[PoseName, tuple[Point, list[_Chain]]] = {
             [((1, 62), 5.5), ((3, 88), 12.5), ((5, 128), 12.5)],
             [((5, 130), 10.5), ((-36, 133), 7.5), ((-37, 184), 4.4)],
             [((-37, 190), 4), ((-52, 195), 3.4)],
-            [((3, 76), 6.4), ((8, 104), 5), ((2, 130), 3.6), ((-3, 140), 3)],
         ],
     ),
 }
+_SITTING_ARM: _Chain = [((4, 78), 5.6), ((9, 106), 4.6), ((9, 130), 3.6), ((8, 143), 2.8)]
 
 
 @cache
 def pose_outline(pose: PoseName) -> QPainterPath:
     """Return a person in a pose; bow and sitting are seen from the left side."""
-    (x, y), chains = _POSES[pose]
+    if pose in ("n", "t"):
+        return _standing(_HANGING if pose == "n" else _STRETCHED)
+    (x, y), chains = _FROM_THE_SIDE[pose]
     outline = QPainterPath()
     outline.addEllipse(QPointF(x, y), 10.5, 13.0)
     for chain in chains:
-        for (a, wide), (b, narrow) in pairwise(chain):
-            outline = outline.united(limb(a, b, wide, narrow))
+        outline = outline.united(_chain(chain))
     return outline.simplified()
+
+
+@cache
+def pose_arm(pose: PoseName) -> QPainterPath:
+    """Return the arm that hangs in front of the trunk, empty where none does."""
+    return _chain(_SITTING_ARM).simplified() if pose == "sit" else QPainterPath()
 
 
 @cache

@@ -27,7 +27,7 @@ from studio.ui.views.hold_display import HoldDisplay
 from studio.ui.views.hold_words import HoldWords
 from studio.ui.views.limb_table import LimbTable
 
-PANEL = 400  # px at 100 % text
+PANEL = 440  # px at 100 % text
 SHARE = 0.5  # of the page that the panel may take when text is large
 
 
@@ -64,7 +64,6 @@ class CalibrationPage(QWidget):
         model.changed.connect(self.refresh)
         model.cued.connect(self._cue)
         self.restyle()
-        self.refresh()
 
     def set_words(self, words: Mapping[Place, PlaceWords]) -> None:
         """Name the places otherwise: for clinic or studio."""
@@ -82,6 +81,7 @@ class CalibrationPage(QWidget):
         self.display.restyle()
         self.table.restyle()
         self._fit_panel()
+        self.refresh()
 
     def refresh(self) -> None:
         """Show what the model says."""
@@ -227,6 +227,18 @@ class CalibrationPage(QWidget):
         self.headline.setText(now.headline)
 
     def _show_buttons(self) -> None:
+        focused = next((button for button in self._actions() if button.hasFocus()), None)
+        self._show_action_buttons()
+        # Space and Enter go to what comes next, never to what happens to stand there now.
+        if focused is not None and focused.isHidden():
+            shown = [button for button in self._actions() if not button.isHidden()]
+            first = next((button for button in shown if button.property("kind") == "primary"), None)
+            (first or shown[0]).setFocus()
+
+    def _actions(self) -> tuple[QPushButton, ...]:
+        return (self.start, self.cancel, self.sit, self.accept, self.repeat, self.repeat_some)
+
+    def _show_action_buttons(self) -> None:
         model = self._model
         hold, running = model.hold, model.is_running
         upcoming = hold.next_pose
@@ -237,7 +249,7 @@ class CalibrationPage(QWidget):
             self.delay.setCurrentIndex(DELAYS.index(model.delay))
         self.delay.setEnabled(not running)
         failed = hold.phase is Phase.JUDGED and hold.outcome is not None and hold.outcome.pose not in hold.done
-        self.start.setVisible(not running and upcoming is not None and not (failed and hold.outcome))
+        self.start.setVisible(not running and upcoming is not None and not failed)
         self.start.setEnabled(bool(model.assigned))
         text = self._said.start(upcoming or hold.sequence[0])
         self.start.setText(self.tr("{what}  (Space)").format(what=text))
@@ -262,6 +274,9 @@ class CalibrationPage(QWidget):
             self.repeat_some.setText(self._said.repeat_only(moved))
             self.repeat_some.setAccessibleName(self.repeat_some.text())
         # One button is the obvious one: repeat what failed, else the next pose, else accept.
+        rest_first = not self.sit.isHidden() and hold.outcome is None
+        set_look(self.sit, kind="primary" if rest_first else "")
+        set_look(self.start, kind="" if rest_first else "primary")
         set_look(self.accept, kind="primary" if finished and not failed else "")
         set_look(self.repeat, kind="primary" if failed and not some else "")
         set_look(self.repeat_some, kind="primary" if some else "")

@@ -10,7 +10,7 @@ from studio.capture.procedures.held_pose import Cue, Kind
 from studio.core.take import PoseName
 from studio.ui.style_sheet import mixed
 from studio.ui.theme import GAP, GAP_PAGE, GAP_WIDE, Theme
-from studio.ui.views.body_shapes import HEIGHT, fitted, pose_lines, pose_outline
+from studio.ui.views.body_shapes import HEIGHT, fitted, pose_arm, pose_lines, pose_outline
 
 FLASH = 0.15  # s
 FLASH_GAP = 0.34  # s from one flash to the next: under 3 a second
@@ -30,6 +30,7 @@ class HoldDisplay(QWidget):
         self._now = 0.0
         self._flash_at = -math.inf
         self._flash = False
+        self._flash_tone = "accent"
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
 
     @property
@@ -58,8 +59,9 @@ class HoldDisplay(QWidget):
 
     def cue(self, cue: Cue) -> None:
         """Flash, unless the last flash was less than a third of a second ago."""
-        if self._now - self._flash_at >= FLASH_GAP and cue.kind is not Kind.FAILED:
+        if self._now - self._flash_at >= FLASH_GAP:
             self._flash_at, self._flash = self._now, True
+            self._flash_tone = {Kind.DONE: "good", Kind.FAILED: "bad"}.get(cue.kind, "accent")
             self.update()
 
     def tick(self, now: float) -> None:
@@ -87,7 +89,7 @@ class HoldDisplay(QWidget):
         tokens = self._theme.tokens
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        ground = mixed(tokens.window, tokens.accent, 0.35) if self._flash else tokens.window
+        ground = mixed(tokens.window, getattr(tokens, self._flash_tone), 0.35) if self._flash else tokens.window
         painter.fillRect(self.rect(), QColor(ground))
         sentence = self._paint_sentence(painter)
         stage = QRectF(self.rect()).adjusted(GAP_PAGE, GAP_PAGE, -GAP_PAGE, -GAP_WIDE)
@@ -124,6 +126,7 @@ class HoldDisplay(QWidget):
         painter.setPen(QPen(QColor(mixed(tokens.window, tokens.text, 0.40)), 1.5 / scale))
         painter.setBrush(QColor(mixed(tokens.window, tokens.text, 0.16)))
         painter.drawPath(outline)
+        painter.drawPath(pose_arm(self._pose))
         painter.restore()
 
     def _paint_ring(self, painter: QPainter, room: QRectF) -> None:

@@ -122,7 +122,7 @@ class HoldWords(QObject):
         pose = hold.pose if hold.phase is not Phase.JUDGED else hold.next_pose or hold.pose
         if model.rest.is_running:
             left = str(max(1, round(sitting_rest.SITTING * (1 - model.rest.progress(model.now)) + 0.49)))
-            return Now("sit", left, self.tr("Sit still, hands on the thighs."), self.tr("Measuring the rest"))
+            return Now("sit", left, self.tr("Sit still, arms hanging."), self.tr("Measuring the rest"))
         if not model.assigned:
             return Now("n", "–", self.tr("No tag has a place yet."), self.tr("Assign the tags first"), "muted")
         if hold.phase is Phase.COUNTDOWN:
@@ -133,6 +133,9 @@ class HoldWords(QObject):
             return Now(pose, self.tr("…"), self.tr("You may move again."), self.tr("Looking at the hold"))
         if hold.phase is Phase.JUDGED and hold.outcome is not None:
             return self._judged(hold.outcome, model)
+        if model.rest_missing and hold.outcome is None:
+            small = self.tr("Sit still for 5 s, or start with the pose.")
+            return Now("sit", self.tr("Rest"), small, self.tr("The rest is missing"))
         name = self.pose(pose)
         return Now(pose, name, self.how(pose), self.tr("Next: {pose}").format(pose=name))
 
@@ -154,6 +157,8 @@ class HoldWords(QObject):
     def _refusal(self, outcome: Outcome) -> str:
         if not outcome.answered:
             return self.tr("Nobody judged the hold")
+        if outcome.moved:
+            return self.tr("{pose} not held still").format(pose=self.pose(outcome.pose))
         return sentences(outcome.error).what if outcome.error is not None else self.tr("The hold cannot be used")
 
     def _about(self, outcome: Outcome, model: HoldModel) -> str:
@@ -163,7 +168,7 @@ class HoldWords(QObject):
             return self.tr("Which way the limbs face is not known yet; the next pose tells.")
         if outcome.error is not None:
             message = sentences(outcome.error)
-            return f"{message.why} {message.do}"
+            return message.do if outcome.moved else f"{message.why} {message.do}"
         unknown = tuple(limb.place for limb in outcome.limbs if limb.source == "unknown")
         if unknown:
             text = self.tr("Heading unknown: {limbs}. These limbs are left out; repeat the bow to include them.")

@@ -10,8 +10,8 @@ from studio.ui.models.place_words import PlaceWords
 from studio.ui.style_sheet import mixed
 from studio.ui.theme import FOCUS, GRID, Theme
 
-SMALLEST = 28  # px, of the badge; with its margin a target of 40
-MARGIN = 6  # px around the badge, for focus ring and warning
+SMALLEST = 28  # px, of the badge; with its margin a target of 44
+MARGIN = 8  # px around the badge, for focus ring and warning
 ARROWS = {
     Qt.Key.Key_Left: (-1, 0),
     Qt.Key.Key_Right: (1, 0),
@@ -99,7 +99,7 @@ class PlaceMark(QAbstractButton):
         if self.hasFocus():
             painter.setBrush(Qt.BrushStyle.NoBrush)
             painter.setPen(QPen(QColor(self._theme.tokens.accent), FOCUS))
-            painter.drawPath(self._shape(QRectF(self.rect()).adjusted(3, 3, -3, -3)))
+            painter.drawPath(self._shape(QRectF(self.rect()).adjusted(5, 5, -5, -5)))
         painter.end()
 
     def _shape(self, room: QRectF) -> QPainterPath:
@@ -146,7 +146,7 @@ class PlaceMark(QAbstractButton):
 
     def _paint_warning(self, painter: QPainter) -> None:
         tokens = self._theme.tokens
-        side = self.width() * 0.42
+        side = self.width() * 0.36
         right, top = float(self.width()), 0.0
         triangle = QPainterPath(QPointF(right - side / 2, top + 1))
         triangle.lineTo(right - 1, top + side - 1)
