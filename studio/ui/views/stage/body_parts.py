@@ -231,7 +231,7 @@ def _limb(name: str, place: Place, balls: tuple[Ball, ...]) -> Part:
 
 
 def _joint(name: str, place: Place, segment: Segment, radius: float, needs: tuple[Place, ...]) -> Part:
-    return Part(name, place, "joint", (Ball(segment, (0.0, 0.0, 0.0), radius),), 1, needs, lead=0.03)
+    return Part(name, place, "joint", (Ball(segment, (0.0, 0.0, 0.0), radius),), 1, needs, lead=0.05)
 
 
 class Body:
@@ -255,9 +255,17 @@ class Body:
         )
         self.radii: Array = radii[self._rows]
         """(parts, MOST_BALLS), m."""
-        self._upper = np.array([(start, start + part.row - 1) for start, part in zip(first, self.parts, strict=True)])
         last = first + np.array([len(part.balls) for part in self.parts])
+        self._upper = np.array([(start, start + part.row - 1) for start, part in zip(first, self.parts, strict=True)])
         self._lower = np.array([(end - 1, end - part.row) for end, part in zip(last, self.parts, strict=True)])
+        self.end_widths: Array = np.stack(
+            [
+                radii[end[:, 0]] + np.linalg.norm(self._where[end[:, 0]] - self._where[end[:, 1]], axis=1) / 2
+                for end in (self._upper, self._lower)
+            ],
+            axis=1,
+        )
+        """(parts, 2), m: half the width of each end of the axis."""
 
     def posed(self, world_from_segment: Array, joints: Array) -> tuple[Array, Array]:
         """Return the centres of the balls, (parts, MOST_BALLS, 3), and both ends of the axes, (parts, 2, 3), m, world.

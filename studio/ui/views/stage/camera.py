@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -14,6 +15,7 @@ VIEWS: tuple[View, ...] = ("front", "side", "top", "free")
 FIELD = math.radians(26.0)  # rad, of the picture's height; a portrait lens (75 mm on 35 mm film)
 ROOM = 1.42  # of the stature; what the height shows at the target
 NARROWEST = 0.86  # of the height; a narrower picture is measured by its width, so that the arms stay in it
+LARGE = 900.0  # px; from this height on lines grow
 NEAR = 0.2  # m; nothing nearer is drawn
 NEAREST, FARTHEST = 0.8, 30.0  # m, from eye to target
 STEEPEST = math.radians(89.9)  # rad; straight down has no "up"
@@ -44,20 +46,25 @@ class Camera:
     size: tuple[float, float] = (640.0, 480.0)
     """px, width and height of the picture."""
 
-    @property
+    @cached_property
     def focal(self) -> float:
         """px; a metre at one metre's distance is that long."""
         width, height = self.size
         return min(height, width / NARROWEST) / (2 * math.tan(FIELD / 2))
 
     @property
+    def hairline(self) -> float:
+        """px; lines grow with the picture, so that they are still seen on a wall."""
+        return max(1.0, min(self.size) / LARGE)
+
+    @cached_property
     def axes(self) -> Array:
         """(3, 3): rows are the picture's right and up and the way towards the eye, in world axes."""
         ca, sa = math.cos(self.azimuth), math.sin(self.azimuth)
         ce, se = math.cos(self.elevation), math.sin(self.elevation)
         return np.array([[-sa, ca, 0.0], [-se * ca, -se * sa, ce], [ce * ca, ce * sa, se]])
 
-    @property
+    @cached_property
     def eye(self) -> Array:
         """(3,), m, world."""
         return np.asarray(np.array(self.target) + self.distance * self.axes[2])

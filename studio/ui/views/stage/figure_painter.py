@@ -1,12 +1,13 @@
 """The body: parts painted from the farthest to the nearest; known ones shaded, unknown hatched, silent hollow."""
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QImage, QPainter, QPolygonF, QTransform
+from PySide6.QtGui import QImage, QPainter, QPixmap, QPolygonF, QTransform
 from shiboken6 import VoidPtr
 
 from studio.ui.models.stage_pose import StagePose
@@ -17,8 +18,8 @@ from studio.ui.views.stage.shading import Shading, placed
 
 Array = NDArray[np.float64]
 
-RIM = 1.25  # px; the dark line that parts a limb from what is behind it
-GHOST_RIM = 1.75  # px
+RIM = 1.25  # hairlines; the dark line that parts a limb from what is behind it
+GHOST_RIM = 1.75  # hairlines
 
 
 class FigurePainter:
@@ -34,11 +35,18 @@ class FigurePainter:
         """Return the body of ``pose`` on the picture."""
         return outlines(self.body, camera, pose.world_from_segment, pose.joints, self._leads)
 
-    def paint(self, painter: QPainter, shading: Shading, pose: StagePose, seen: Outlines) -> None:
-        """Paint the figure."""
+    def paint(
+        self,
+        painter: QPainter,
+        shading: Shading,
+        pose: StagePose,
+        seen: Outlines,
+        badges: Mapping[int, tuple[QPointF, QPixmap]],
+    ) -> None:
+        """Paint the figure; each of ``badges`` belongs to a part and is hidden by what hides that."""
         painter.setPen(Qt.PenStyle.NoPen)
         self._edges.fill(seen.edges)
-        self._rims.fill(grown(seen.edges, RIM))
+        self._rims.fill(grown(seen.edges, RIM * seen.hairline))
         for row in seen.order:
             part = self.body.parts[row]
             if part.needs:
@@ -52,14 +60,16 @@ class FigurePainter:
                 painter.setBrush(shading.rim)
                 painter.drawPolygon(self._rims[row])
                 self._paint_shaded(painter, shading, part, seen, row)
+            if row in badges:
+                painter.drawPixmap(*badges[row])
 
     def paint_ghost(self, painter: QPainter, shading: Shading, seen: Outlines) -> None:
         """Paint only the outline of the whole body, filled so thinly that what is behind is seen."""
         if not seen.order:
             return
         rows = list(seen.order)
-        left, top = np.floor(seen.edges[rows].min(axis=(0, 1)) - 2 * GHOST_RIM).tolist()
-        right, bottom = np.ceil(seen.edges[rows].max(axis=(0, 1)) + 2 * GHOST_RIM).tolist()
+        left, top = np.floor(seen.edges[rows].min(axis=(0, 1)) - 2 * GHOST_RIM * seen.hairline).tolist()
+        right, bottom = np.ceil(seen.edges[rows].max(axis=(0, 1)) + 2 * GHOST_RIM * seen.hairline).tolist()
         box = QRectF(left, top, right - left, bottom - top) & QRectF(painter.window())
         if box.isEmpty():
             return
@@ -68,7 +78,7 @@ class FigurePainter:
         layer.setDevicePixelRatio(ratio)
         layer.fill(Qt.GlobalColor.transparent)
         self._edges.fill(seen.edges)
-        self._rims.fill(grown(seen.edges, GHOST_RIM))
+        self._rims.fill(grown(seen.edges, GHOST_RIM * seen.hairline))
         inner = QPainter(layer)
         inner.setRenderHint(QPainter.RenderHint.Antialiasing)
         inner.translate(-box.topLeft())

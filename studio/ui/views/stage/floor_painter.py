@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
-from PySide6.QtGui import QBrush, QColor, QLinearGradient, QPainter, QPen, QPolygonF, QTransform
+from PySide6.QtGui import QBrush, QColor, QLinearGradient, QPainter, QPen, QTransform
 
 from studio.core import rotation
 from studio.core.body import Segment, Skeleton
@@ -16,10 +16,13 @@ from studio.ui.views.stage.shading import Shading, mixed, placed
 
 Array = NDArray[np.float64]
 
-REACH = 2.8  # of the camera's distance; how far the grid goes
-FADES = ((0.0, 0), (0.27, 0), (0.42, 70), (0.75, 190), (1.0, 235))
+REACH = 1.9  # of the camera's distance; how far the grid goes
+FADES = ((0.0, 0), (0.34, 0), (0.5, 80), (0.8, 190), (1.0, 235))
 """Nearness (the target's depth by that of the line) and how much of 255 is seen."""
 FLAT = math.radians(80.0)  # rad; seen more steeply, the floor has no far end
+LOW = (Segment.LeftHand, Segment.RightHand, Segment.LeftLeg, Segment.RightLeg, Segment.Head)
+FAINTEST = 0.02  # of the shadow's darkness; less is not seen
+FLATTEST = 0.05  # of its width; the least height of a shadow on the picture
 SHADOW_HEIGHT = 0.35  # m; what is higher throws no contact shadow
 
 
@@ -43,13 +46,12 @@ class FloorPainter:
 
     def paint_path(self, painter: QPainter, camera: Camera, path: Array) -> None:
         """Paint where the hips were above the floor, (n, 2), m, world; a NaN row parts two ways."""
-        if len(path) < 2:
-            return
-        points = camera.project(np.column_stack([path, np.zeros(len(path))]))
+        near = np.hypot(*(path - camera.target[:2]).T) < REACH * camera.distance
+        points = camera.project(np.column_stack([np.where(near[:, None], path, np.nan), np.zeros(len(path))]))
         painter.setPen(self._pen(camera, self._fading_path, self._path, 2.0))
         painter.setBrush(Qt.BrushStyle.NoBrush)
         for run in _runs(points):
-            painter.drawPolyline(QPolygonF([QPointF(x, y) for x, y in run.tolist()]))
+            painter.drawPolyline([QPointF(x, y) for x, y in run.tolist()])
 
     def paint_shadow(
         self,
@@ -61,37 +63,30 @@ class FloorPainter:
         joints: Array,
     ) -> None:
         """Paint soft shadows below the hips, the feet, and what else comes near the floor."""
-        painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(shading.shadow)
-        under = joints[Segment.Hips] * (1.0, 1.0, 0.0)
-        self._blot(painter, camera, under, np.array([0.42, 0.0, 0.0]), 0.42, 0.55)
-        for foot in (Segment.LeftFoot, Segment.RightFoot):
-            sole = joints[foot] + rotation.rotate(world_from_segment[foot], skeleton.foot_points())
-            long = (sole[1] - sole[0]) * (0.85, 0.85, 0.0)
-            self._blot(painter, camera, sole.mean(axis=0) * (1.0, 1.0, 0.0), long, 0.085, _near(sole[:, 2].min()))
-        for joint in (Segment.LeftHand, Segment.RightHand, Segment.LeftLeg, Segment.RightLeg, Segment.Head):
-            x, y, z = joints[joint]
-            self._blot(painter, camera, np.array([x, y, 0.0]), np.array([0.13, 0.0, 0.0]), 0.13, _near(z - 0.05))
+        left, right = (
+            joints[foot] + rotation.rotate(world_from_segment[foot], skeleton.foot_points())
+            for foot in (Segment.LeftFoot, Segment.RightFoot)
+        )
+        rows = [joints[Segment.Hips], *_along(left), *_along(right), *joints[list(LOW)]]
+        width = [0.42] + [0.10] * 6 + [0.15] * len(LOW)
+        dark = [0.6, *(_near(x[2]) for x in rows[1:])]
+        spots = np.array(rows) * (1.0, 1.0, 0.0)
+        seen = camera.seen(spots)
+        above = abs(float(camera.eye[2]))
+        blot = shading.shadow
+        for (x, y), depth, half_width, amount in zip(
+            camera.on_picture(seen).tolist(), seen[:, 2].tolist(), width, dark, strict=True
+        ):
+            if amount > FAINTEST and math.isfinite(x + y):
+                # a circle on the floor is an ellipse that is as flat as the camera is low
+                wide = half_width * camera.focal / depth
+                high = wide * max(above / depth, FLATTEST)
+                painter.setOpacity(amount)
+                painter.drawPixmap(QRectF(x - wide, y - high, 2 * wide, 2 * high), blot, QRectF(blot.rect()))
         painter.setOpacity(1.0)
 
-    def _blot(
-        self, painter: QPainter, camera: Camera, middle: Array, long: Array, half_width: float, dark: float
-    ) -> None:
-        length = float(np.hypot(long[0], long[1]))
-        if not (math.isfinite(length) and np.isfinite(middle).all()) or dark <= 0.0 or length < half_width / 4:
-            return
-        wide = np.array([-long[1], long[0], 0.0]) * (half_width / length)
-        points = camera.project(np.stack([middle, middle + long, middle + wide]))
-        if not np.isfinite(points).all():
-            return
-        (x, y), (lx, ly), (wx, wy) = points.tolist()
-        painter.save()
-        painter.setOpacity(dark)
-        painter.setTransform(QTransform(lx - x, ly - y, wx - x, wy - y, x, y), True)
-        painter.drawEllipse(QRectF(-1.0, -1.0, 2.0, 2.0))
-        painter.restore()
-
-    def _pen(self, camera: Camera, fading: QBrush, plain: QColor, width: float) -> QPen:
+    def _pen(self, camera: Camera, fading: QBrush, plain: QColor, hairlines: float) -> QPen:
+        width = hairlines * camera.hairline
         if camera.elevation > FLAT:
             return QPen(plain, width)
         top = camera.horizon
@@ -145,6 +140,11 @@ def _runs(points: Array) -> Sequence[Array]:
     known = np.isfinite(points).all(axis=1)
     cuts = np.flatnonzero(np.diff(known.astype(np.int8))) + 1
     return [run for run in np.split(points, cuts) if len(run) > 1 and np.isfinite(run).all()]
+
+
+def _along(sole: Array) -> Array:
+    """Return three places from heel to ball, (3, 3), m, world."""
+    return np.asarray(sole[:1] + np.array([[0.12], [0.55], [1.0]]) * (sole[1:] - sole[:1]))
 
 
 def _near(height: float) -> float:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QColor, QFontMetricsF, QPainter, QPen
+from PySide6.QtGui import QColor, QFontMetricsF, QPainter, QPen, QPixmap
 
 from studio.core.body import Place
 from studio.ui.models.stage_pose import StagePose
@@ -18,9 +18,12 @@ from studio.ui.views.stage.outlines import Outlines
 Array = NDArray[np.float64]
 
 LETTERED = ("hand", "toes")
-SMALL_FIGURE = 110.0  # px; of a figure that is less high only the feet get letters
+OF_SMALL, OF_LARGE = 0.06, 0.028  # of the figure's height; a letter is between these, if it can one and a half captions
+LEAST = 16.0  # px
+SMALL_FIGURE = 160.0  # px; of a figure that is less high only the feet get letters
 NARROW = 420  # px at 100 % text; narrower pictures list the names at the top instead of beside the limbs
-WIDEST = 0.36  # of the picture; a longer name is cut in its middle
+WIDEST = 0.36  # of the picture; where there is no more room beside the figure, longer names are cut
+LISTED = 0.25  # of the picture's height; more room is not taken by a list
 
 
 class Letters(NamedTuple):
@@ -28,6 +31,13 @@ class Letters(NamedTuple):
 
     left: str
     right: str
+
+
+class More(NamedTuple):
+    """Words for what finds no room, with ``{n}``."""
+
+    others: str
+    all: str
 
 
 class _Label(NamedTuple):
@@ -41,33 +51,57 @@ class LabelsPainter:
 
     def __init__(self, theme: Theme) -> None:
         self._theme = theme
-        self._font = theme.font("caption", bold=True)
-        self._words_font = theme.font("body")
-        self._metrics = QFontMetricsF(self._words_font)
+        self._font = theme.font("body")
+        self._metrics = QFontMetricsF(self._font)
+        self._badges: dict[tuple[bool, int, Letters, float], QPixmap] = {}
 
-    def paint_letters(self, painter: QPainter, parts: Sequence[Part], seen: Outlines, letters: Letters) -> None:
-        """Paint a round L at the left hand and foot, a square R at the right ones."""
-        tokens = self._theme.tokens
+    def letters(
+        self, parts: Sequence[Part], seen: Outlines, letters: Letters, ratio: float
+    ) -> dict[int, tuple[QPointF, QPixmap]]:
+        """Return where to put a round L at the left hand and foot, a square R at the right ones, by part."""
         rows = list(seen.order)
         height = float(np.ptp(seen.edges[rows][..., 1])) if rows else 0.0
-        size = self._theme.pixels("caption") * 1.5
-        painter.setFont(self._font)
+        usual = min(max(height * OF_SMALL, LEAST), self._theme.pixels("caption") * 1.5)
+        size = round(max(usual, height * OF_LARGE))
+        placed = {}
         for row in rows:
             part = parts[row]
             if part.name not in LETTERED or (part.name == "hand" and height < SMALL_FIGURE):
                 continue
-            middle = self._beside(seen, row, size)
-            box = QRectF(middle.x() - size / 2, middle.y() - size / 2, size, size)
-            painter.setPen(Qt.PenStyle.NoPen)
-            painter.setBrush(QColor(tokens.left if part.tone == "left" else tokens.right))
-            if part.tone == "left":
-                painter.drawEllipse(box)
-            else:
-                painter.drawRoundedRect(box, 2.0, 2.0)
-            painter.setPen(QColor(tokens.on_accent))
-            painter.drawText(box, Qt.AlignmentFlag.AlignCenter, letters.left if part.tone == "left" else letters.right)
+            corner = self._beside(seen, row, size) - QPointF(size / 2, size / 2)
+            placed[row] = (corner, self._badge(part.tone == "left", size, letters, ratio))
+        return placed
 
-    def _beside(self, seen: Outlines, row: int, size: float) -> QPointF:
+    def _badge(self, is_left: bool, size: int, letters: Letters, ratio: float) -> QPixmap:
+        """Return a letter on its ground; drawn once for each size."""
+        key = (is_left, size, letters, ratio)
+        if key not in self._badges:
+            self._badges[key] = self._drawn(*key)
+        return self._badges[key]
+
+    def _drawn(self, is_left: bool, size: int, letters: Letters, ratio: float) -> QPixmap:
+        tokens = self._theme.tokens
+        badge = QPixmap(round(size * ratio), round(size * ratio))
+        badge.setDevicePixelRatio(ratio)
+        badge.fill(Qt.GlobalColor.transparent)
+        box = QRectF(0.0, 0.0, size, size)
+        painter = QPainter(badge)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(QColor(tokens.left if is_left else tokens.right))
+        if is_left:
+            painter.drawEllipse(box)
+        else:
+            painter.drawRoundedRect(box, 2.0, 2.0)
+        font = self._theme.font("caption", bold=True)
+        font.setPixelSize(round(size / 1.5))
+        painter.setFont(font)
+        painter.setPen(QColor(tokens.on_accent))
+        painter.drawText(box, Qt.AlignmentFlag.AlignCenter, letters.left if is_left else letters.right)
+        painter.end()
+        return badge
+
+    def _beside(self, seen: Outlines, row: int, size: int) -> QPointF:
         """Return the middle of a letter just beyond the lower end of a part."""
         edge = seen.edges[row]
         along = seen.along[row]
@@ -76,11 +110,11 @@ class LabelsPainter:
         return QPointF(x, y)
 
     def paint_silent(
-        self, painter: QPainter, room: QRectF, parts: Sequence[Part], seen: Outlines, pose: StagePose, more: str
+        self, painter: QPainter, room: QRectF, parts: Sequence[Part], seen: Outlines, pose: StagePose, more: More
     ) -> None:
         """Paint the words for each silent place, with a line to its limb; ``more`` says how many found no room."""
         labels = self._labels(parts, seen, pose)
-        painter.setFont(self._words_font)
+        painter.setFont(self._font)
         if room.width() < NARROW * self._theme.text_scale:
             self._paint_list(painter, room, [label.words for label in labels], more)
             return
@@ -104,7 +138,7 @@ class LabelsPainter:
             for place, row in largest.items()
         ]
 
-    def _paint_column(self, painter: QPainter, room: QRectF, labels: Sequence[_Label], side: float, more: str) -> None:
+    def _paint_column(self, painter: QPainter, room: QRectF, labels: Sequence[_Label], side: float, more: More) -> None:
         if not labels:
             return
         height, gap = self._chip_height(), float(GRID)
@@ -122,19 +156,23 @@ class LabelsPainter:
             self._paint_chip(painter, box, label.words)
         if hidden:
             top = tops[-1] + height + gap if tops else room.top()
-            words = more.format(n=hidden)
+            words = more.others.format(n=hidden)
             self._paint_chip(painter, self._chip(words, room, side, labels[0].on_right, top), words)
 
-    def _paint_list(self, painter: QPainter, room: QRectF, words: Sequence[str], more: str) -> None:
+    def _paint_list(self, painter: QPainter, room: QRectF, words: Sequence[str], more: More) -> None:
         height = self._chip_height()
-        fits = max(int(room.height() / 2 // (height + GRID)), 1)
-        shown = list(words) if len(words) <= fits else [*words[: fits - 1], more.format(n=len(words) - fits + 1)]
+        fits = max(int(room.height() * LISTED // (height + GRID)), 1)
+        shown = list(words)
+        if len(words) > fits:
+            shown = [*words[: fits - 1], more.others.format(n=len(words) - fits + 1)]
+            shown = shown if fits > 1 else [more.all.format(n=len(words))]
         for line, said in enumerate(shown):
             width = min(self._width(said), room.width())
             self._paint_chip(painter, QRectF(room.left(), room.top() + line * (height + GRID), width, height), said)
 
     def _chip(self, words: str, room: QRectF, side: float, on_right: bool, top: float) -> QRectF:
-        width = min(self._width(words), WIDEST * room.width())
+        beside = room.right() - side - 3 * GAP if on_right else side - 3 * GAP - room.left()
+        width = min(self._width(words), max(beside, WIDEST * room.width()))
         left = side + 3 * GAP if on_right else side - 3 * GAP - width
         left = min(max(left, room.left()), room.right() - width)
         return QRectF(left, top, width, self._chip_height())
@@ -161,7 +199,7 @@ class LabelsPainter:
         text = QRectF(mark.right() + GRID, box.top(), box.right() - GAP - mark.right() - GRID, box.height())
         painter.setPen(QColor(tokens.text))
         # one px more: elision rounds
-        said = self._metrics.elidedText(words, Qt.TextElideMode.ElideMiddle, text.width() + 1.0)
+        said = self._metrics.elidedText(words, Qt.TextElideMode.ElideRight, text.width() + 1.0)
         painter.drawText(text, Qt.AlignmentFlag.AlignVCenter | Qt.TextFlag.TextSingleLine, said)
 
 

@@ -18,7 +18,7 @@ LIGHT = np.array([-0.44, 0.60, 0.67]) / np.linalg.norm([-0.44, 0.60, 0.67])
 """Towards the light, along the picture's right and up and the way towards the eye: over the camera's left shoulder."""
 _LIGHT_ON_PICTURE = np.array([LIGHT[0], -LIGHT[1]]) / np.hypot(LIGHT[0], LIGHT[1])
 
-_STATIONS = np.linspace(0.0, 1.0, 5)  # along an axis; where two parts are compared
+_STATIONS = np.linspace(0.0, 1.0, 4)  # along an axis; where two parts are compared
 SAME_DEPTH = 0.008  # m; within this neither of two parts hides the other
 
 
@@ -44,6 +44,8 @@ class Outlines:
     """(parts,), px per metre."""
     drawable: NDArray[np.bool_]
     """(parts,)."""
+    hairline: float
+    """px."""
     order: tuple[int, ...]
     """Drawable parts, farthest first."""
 
@@ -83,7 +85,10 @@ def outlines(body: Body, camera: Camera, world_from_segment: Array, joints: Arra
         along=_unit(axis[:, 1] - axis[:, 0]),
         scale=scale,
         drawable=drawable,
-        order=_painting_order(axis, seen_ends[..., 2], radii, drawable, leads),
+        hairline=camera.hairline,
+        order=_painting_order(
+            _neighbours(balls, radii), axis, seen_ends[..., 2], body.end_widths * scale[:, None], drawable, leads
+        ),
     )
 
 
@@ -122,34 +127,53 @@ def _light(seen_ends: Array, axis: Array, radius: Array) -> tuple[Array, Array, 
 
 
 def _painting_order(
-    axis: Array, depths: Array, radii: Array, drawable: NDArray[np.bool_], leads: Array
+    pairs: tuple[NDArray[np.intp], NDArray[np.intp]],
+    axis: Array,
+    depths: Array,
+    widths: Array,
+    drawable: NDArray[np.bool_],
+    leads: Array,
 ) -> tuple[int, ...]:
     """Return the drawable parts so that what hides comes after what is hidden.
 
-    Two parts are compared where they overlap on the picture, at stations along their axes. Parts that hide each other
-    in a ring, which bodies do not, are taken by their middle.
+    Two parts are compared where they overlap on the picture: at stations along their axes, the more the closer these
+    are. Parts that hide each other in a ring, which bodies do not, are taken by their middle.
+
+    Parameters
+    ----------
+    axis : (parts, 2, 2), px
+    depths : (parts, 2), m: of both ends of the axis
+    widths : (parts, 2), px: half the width of both ends
     """
-    count = len(axis)
-    share = _STATIONS[None, :, None]
-    stations = axis[:, :1] * (1 - share) + axis[:, 1:] * share
-    # depths along a straight limb: 1/depth is what runs evenly on the picture
+    first, second = pairs
+    share = _STATIONS[None, :]
+    stations = axis[:, :1] * (1 - share[..., None]) + axis[:, 1:] * share[..., None]
+    width = widths[:, :1] * (1 - share) + widths[:, 1:] * share
+    # 1/depth is what runs evenly on the picture
     inverse = 1.0 / depths
-    depth = 1.0 / (inverse[:, :1] * (1 - share[..., 0]) + inverse[:, 1:] * share[..., 0])
-    depth -= leads[:, None]
-    width = np.median(radii, axis=1)
-    first, second = np.triu_indices(count, 1)
+    depth = 1.0 / (inverse[:, :1] * (1 - share) + inverse[:, 1:] * share) - leads[:, None]
     apart = stations[first][:, :, None] - stations[second][:, None]
-    limit = (width[first] + width[second])[:, None, None]
-    overlap = (apart * apart).sum(axis=-1) < limit * limit
+    limit = width[first][:, :, None] + width[second][:, None]
+    overlap = np.maximum(1.0 - (apart * apart).sum(axis=-1) / (limit * limit), 0.0)
     behind = ((depth[first][:, :, None] - depth[second][:, None]) * overlap).sum(axis=(1, 2))
-    behind /= np.maximum(overlap.sum(axis=(1, 2)), 1)
-    earlier = [0] * count
-    for i, j in zip(first[behind > SAME_DEPTH], second[behind > SAME_DEPTH], strict=True):
-        earlier[j] |= 1 << int(i)
-    for i, j in zip(first[behind < -SAME_DEPTH], second[behind < -SAME_DEPTH], strict=True):
-        earlier[i] |= 1 << int(j)
+    behind /= np.maximum(overlap.sum(axis=(1, 2)), 1e-9)
+    earlier = [0] * len(axis)
+    for i, j, way in zip(first.tolist(), second.tolist(), behind.tolist(), strict=True):
+        if way > SAME_DEPTH:
+            earlier[j] |= 1 << i
+        elif way < -SAME_DEPTH:
+            earlier[i] |= 1 << j
     farthest = [int(row) for row in np.argsort(-depth.mean(axis=1)) if drawable[row]]
     return _in_turn(farthest, earlier)
+
+
+def _neighbours(balls: Array, radii: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return the pairs of parts whose boxes overlap on the picture."""
+    least = (balls - radii[..., None]).min(axis=1)
+    most = (balls + radii[..., None]).max(axis=1)
+    touching = (least[:, None] < most[None]).all(axis=-1)
+    first, second = np.nonzero(np.triu(touching & touching.T, 1))
+    return first, second
 
 
 def _in_turn(farthest: list[int], earlier: list[int]) -> tuple[int, ...]:

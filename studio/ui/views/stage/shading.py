@@ -4,7 +4,17 @@ import math
 from collections.abc import Iterable
 
 from PySide6.QtCore import Qt
-from PySide6.QtGui import QBrush, QColor, QGradient, QLinearGradient, QPen, QRadialGradient, QTransform
+from PySide6.QtGui import (
+    QBrush,
+    QColor,
+    QGradient,
+    QLinearGradient,
+    QPainter,
+    QPen,
+    QPixmap,
+    QRadialGradient,
+    QTransform,
+)
 
 from studio.ui.theme import Theme
 from studio.ui.views.stage.body_parts import Tone
@@ -19,6 +29,8 @@ _LIGHT_LIMB, _LIGHT_RIM = (0.07, 0.25, 0.55), 0.74
 _DARK_FACE, _LIGHT_FACE = (0.42, 0.28, 0.16), (0.56, 0.68, 0.82)
 _SIDE = 0.62  # of the side's colour in hands and feet
 _JOINT = 0.35  # of the lit tone in the tones of joints
+SHADOW = ((0.0, 150), (0.35, 110), (0.7, 34), (1.0, 0))  # from the middle to the edge, of 255
+BLOT = 256  # px
 HATCH = 7.0  # px, from one line to the next
 
 Tones = tuple[QColor, QColor, QColor]
@@ -116,8 +128,15 @@ def _hatch(ground: QColor, line: QColor) -> QBrush:
     return QBrush(gradient)
 
 
-def _shadow(colour: QColor) -> QBrush:
-    gradient = QRadialGradient(0.0, 0.0, 1.0)
-    for position, alpha in ((0.0, 150), (0.35, 110), (0.7, 34), (1.0, 0)):
+def _shadow(colour: QColor) -> QPixmap:
+    """Return a round soft blot. A picture that is only stretched costs a tenth of a gradient that is turned."""
+    gradient = QRadialGradient(0.5, 0.5, 0.5)
+    gradient.setCoordinateMode(QGradient.CoordinateMode.ObjectMode)
+    for position, alpha in SHADOW:
         gradient.setColorAt(position, with_alpha(colour, alpha))
-    return QBrush(gradient)
+    blot = QPixmap(BLOT, BLOT)
+    blot.fill(Qt.GlobalColor.transparent)
+    painter = QPainter(blot)
+    painter.fillRect(blot.rect(), gradient)
+    painter.end()
+    return blot

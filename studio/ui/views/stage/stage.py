@@ -23,13 +23,13 @@ from PySide6.QtWidgets import QWidget
 
 from studio.core.body import DEFAULT_STATURE, PLACES, Segment, Skeleton
 from studio.ui.models.stage_pose import StagePose
-from studio.ui.theme import FOCUS, GAP_WIDE, RADIUS, Theme
+from studio.ui.theme import FOCUS, FORM_WIDTH, GAP_WIDE, RADIUS, Theme
 from studio.ui.views.stage.body_parts import Body
 from studio.ui.views.stage.camera import VIEWS, Camera, View
 from studio.ui.views.stage.cameraman import Cameraman, facing, has_place
 from studio.ui.views.stage.figure_painter import FigurePainter
 from studio.ui.views.stage.floor_painter import FloorPainter
-from studio.ui.views.stage.labels_painter import LabelsPainter, Letters
+from studio.ui.views.stage.labels_painter import LabelsPainter, Letters, More
 from studio.ui.views.stage.outlines import Outlines
 from studio.ui.views.stage.shading import Shading, mixed, placed
 from studio.ui.views.stage.walked_path import WalkedPath
@@ -267,13 +267,15 @@ class Stage(QWidget):
         self._floor.paint_shadow(painter, self.camera, *args)
         if self._ghost is not None:
             self._paint_ghost(painter, self._ghost)
-        self._figure.paint(painter, self._shading, pose, seen)
         parts = self._figure.body.parts
-        self._labels.paint_letters(painter, parts, seen, Letters(self.tr("L", "left"), self.tr("R", "right")))
+        letters = Letters(self.tr("L", "left"), self.tr("R", "right"))
+        badges = self._labels.letters(parts, seen, letters, painter.device().devicePixelRatio())
+        self._figure.paint(painter, self._shading, pose, seen, badges)
         below = self._paint_caption(painter, pose.caption)
         room = QRectF(self.rect()).adjusted(GAP_WIDE, GAP_WIDE, -GAP_WIDE, -GAP_WIDE - below)
         if pose.silent:
-            self._labels.paint_silent(painter, room, parts, seen, pose, self.tr("and {n} more"))
+            more = More(self.tr("and {n} more"), self.tr("{n} sensors are silent"))
+            self._labels.paint_silent(painter, room, parts, seen, pose, more)
 
     def _paint_ghost(self, painter: QPainter, ghost: StagePose) -> None:
         self._ghost_figure.paint_ghost(painter, self._shading, self._ghost_figure.project(self.camera, ghost))
@@ -293,8 +295,9 @@ class Stage(QWidget):
         return metrics.height() + GAP_WIDE
 
     def _paint_empty(self, painter: QPainter) -> None:
-        room = QRectF(self.rect()).adjusted(GAP_WIDE, GAP_WIDE, -GAP_WIDE, -GAP_WIDE)
-        painter.setFont(self._theme.font("section"))
+        aside = max(GAP_WIDE, (self.width() - FORM_WIDTH / 2 * self._theme.text_scale) / 2)
+        room = QRectF(self.rect()).adjusted(aside, GAP_WIDE, -aside, -GAP_WIDE)
+        painter.setFont(self._theme.font("body"))
         painter.setPen(QColor(self._theme.tokens.muted))
         painter.drawText(room, Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap, self._empty)
 
