@@ -23,13 +23,13 @@ Rate = int | None
 """Frames a second; None keeps the rate of the recording."""
 
 # Bytes of a cell with its separator, as real files have them on average (tests/ui/test_export_choice.py).
-BVH_ROTATION = 10.2
+BVH_ROTATION = 9.45
 BVH_POSITION = {"blender": 12.2, "motionbuilder": 10.8}
-BVH_HEAD = 4300.0
+BVH_HEAD = 5000.0
 TIME = 9.4
-JOINT_ANGLE = 10.2
+JOINT_ANGLE = 9.45
 ORIENTATION = 4 * 12.6 + 3 * 10.9  # of one sensor
-RAW_ROW = 255.0
+RAW_ROW = 208.0
 MOST_NUMBERS = 999  # of files of one name, before the last is replaced
 
 
