@@ -45,6 +45,8 @@ class Camera:
     """m, from the eye to the target."""
     size: tuple[float, float] = (640.0, 480.0)
     """px, width and height of the picture."""
+    top: float = 0.0
+    """px; where the picture begins below the upper edge of what is painted."""
 
     @cached_property
     def focal(self) -> float:
@@ -72,7 +74,7 @@ class Camera:
     @property
     def horizon(self) -> float:
         """px from the top, where the floor ends."""
-        return self.size[1] / 2 - self.focal * math.tan(self.elevation)
+        return self.top + self.size[1] / 2 - self.focal * math.tan(self.elevation)
 
     def seen(self, points: Array) -> Array:
         """Return ``points`` (..., 3), m, world, along the picture's right, up and depth (away from the eye), m."""
@@ -86,7 +88,7 @@ class Camera:
         out = np.empty((*seen.shape[:-1], 2))
         scale = self.focal / depth
         out[..., 0] = 0.5 * self.size[0] + seen[..., 0] * scale
-        out[..., 1] = 0.5 * self.size[1] - seen[..., 1] * scale
+        out[..., 1] = self.top + 0.5 * self.size[1] - seen[..., 1] * scale
         return out
 
     def project(self, points: Array) -> Array:

@@ -32,17 +32,20 @@ class Cameraman:
         self._body: StagePose | None = None
         self._panned = np.zeros(3)
         self._pace = np.zeros(3)
-        self._size = (640.0, 480.0)
+        self._size, self._top = (640.0, 480.0), 0.0
         self._swing: tuple[Camera, Camera, float] | None = None
         self.camera = self._standing()
 
-    def resize(self, width: int, height: int) -> None:
-        """Take over the size of the picture, px."""
-        self._size = (float(max(width, 1)), float(max(height, 1)))
+    def frame(self, width: float, height: float, top: float) -> None:
+        """Take over the size of the picture and where it begins, px."""
+        framed = ((max(width, 1.0), max(height, 1.0)), top)
+        if framed == (self._size, self._top):
+            return
+        self._size, self._top = framed
         if self._swing is not None:
             start, end, begun = self._swing
-            self._swing = (self._sized(start), self._sized(end), begun)
-        self.camera = self._sized(self.camera)
+            self._swing = (self._framed(start), self._framed(end), begun)
+        self.camera = self._framed(self.camera)
 
     def see(self, pose: StagePose | None) -> None:
         """Take over where the body is: one that appears or jumps is looked at without travelling there."""
@@ -116,7 +119,7 @@ class Cameraman:
         heading, target = 0.0, np.array([0.0, 0.0, MIDDLE * self.skeleton.stature])
         if self._body is not None:
             heading, target = facing(self._body), self._goal(self._body)
-        return self._sized(standing(self.view, self.skeleton.stature, heading, self.mirrored, target))
+        return self._framed(standing(self.view, self.skeleton.stature, heading, self.mirrored, target))
 
     def _go(self, camera: Camera, now: float | None) -> None:
         if now is None:
@@ -128,8 +131,8 @@ class Cameraman:
         lower = MIDDLE * self.skeleton.stature - self.skeleton.hips_height()
         return np.asarray(pose.joints[Segment.Hips] + (0.0, 0.0, lower) + self._panned)
 
-    def _sized(self, camera: Camera) -> Camera:
-        return replace(camera, size=self._size)
+    def _framed(self, camera: Camera) -> Camera:
+        return replace(camera, size=self._size, top=self._top)
 
 
 def has_place(pose: StagePose | None) -> bool:

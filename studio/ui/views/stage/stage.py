@@ -23,15 +23,16 @@ from PySide6.QtWidgets import QWidget
 
 from studio.core.body import DEFAULT_STATURE, PLACES, Segment, Skeleton
 from studio.ui.models.stage_pose import StagePose
-from studio.ui.theme import FOCUS, FORM_WIDTH, GAP_WIDE, RADIUS, Theme
+from studio.ui.theme import FOCUS, FORM_WIDTH, GAP, GAP_WIDE, RADIUS, Theme
 from studio.ui.views.stage.body_parts import Body
 from studio.ui.views.stage.camera import VIEWS, Camera, View
 from studio.ui.views.stage.cameraman import Cameraman, facing, has_place
 from studio.ui.views.stage.figure_painter import FigurePainter
 from studio.ui.views.stage.floor_painter import FloorPainter
-from studio.ui.views.stage.labels_painter import LabelsPainter, Letters, More
 from studio.ui.views.stage.outlines import Outlines
 from studio.ui.views.stage.shading import Shading, mixed, placed
+from studio.ui.views.stage.side_letters import Letters, SideLetters
+from studio.ui.views.stage.silent_names import More, SilentNames
 from studio.ui.views.stage.walked_path import WalkedPath
 
 Array = NDArray[np.float64]
@@ -80,6 +81,7 @@ class Stage(QWidget):
         if pose is self._pose:
             return
         self._pose, self._dirty = pose, True
+        self._frame()
         self._cameraman.see(pose)
         if pose is not None and self.follow:
             self._path.add(pose.joints[Segment.Hips, :2])
@@ -107,9 +109,10 @@ class Stage(QWidget):
         """Take over colours and text sizes."""
         self._shading = Shading(self._theme)
         self._floor = FloorPainter(self._theme)
-        self._labels = LabelsPainter(self._theme)
+        self._letters, self._names = SideLetters(self._theme), SilentNames(self._theme)
         self._ground = _ground(self._theme)
         self._dirty = True
+        self._frame()
         self.update()
 
     def tick(self, now: float) -> None:
@@ -189,7 +192,7 @@ class Stage(QWidget):
 
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 (Qt's name)
         """Keep the body in the picture."""
-        self._cameraman.resize(self.width(), self.height())
+        self._frame()
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 (Qt's name)
         """Paint."""
@@ -269,30 +272,36 @@ class Stage(QWidget):
             self._paint_ghost(painter, self._ghost)
         parts = self._figure.body.parts
         letters = Letters(self.tr("L", "left"), self.tr("R", "right"))
-        badges = self._labels.letters(parts, seen, letters, painter.device().devicePixelRatio())
+        badges = self._letters.placed(parts, seen, letters, painter.device().devicePixelRatio())
         self._figure.paint(painter, self._shading, pose, seen, badges)
-        below = self._paint_caption(painter, pose.caption)
-        room = QRectF(self.rect()).adjusted(GAP_WIDE, GAP_WIDE, -GAP_WIDE, -GAP_WIDE - below)
+        self._paint_caption(painter, pose.caption)
         if pose.silent:
+            room = QRectF(self.rect()).adjusted(GAP_WIDE, GAP_WIDE, -GAP_WIDE, -GAP_WIDE - self._below())
             more = More(self.tr("and {n} more"), self.tr("{n} sensors are silent"))
-            self._labels.paint_silent(painter, room, parts, seen, pose, more)
+            self._names.paint(painter, room, self.camera, self._skeleton.stature, parts, seen, pose, more)
 
     def _paint_ghost(self, painter: QPainter, ghost: StagePose) -> None:
         self._ghost_figure.paint_ghost(painter, self._shading, self._ghost_figure.project(self.camera, ghost))
 
-    def _paint_caption(self, painter: QPainter, words: str) -> float:
-        """Paint words at the lower left; return the height they take, px."""
-        if not words:
-            return 0.0
+    def _paint_caption(self, painter: QPainter, words: str) -> None:
         font = self._theme.font("body")
-        metrics = QFontMetricsF(font)
         room = QRectF(self.rect()).adjusted(GAP_WIDE, 0, -GAP_WIDE, -GAP_WIDE)
-        room.setTop(room.bottom() - metrics.height())
         painter.setFont(font)
         painter.setPen(QColor(self._theme.tokens.muted))
-        said = metrics.elidedText(words, Qt.TextElideMode.ElideRight, room.width())
+        said = QFontMetricsF(font).elidedText(words, Qt.TextElideMode.ElideRight, room.width())
         painter.drawText(room, Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignBottom, said)
-        return metrics.height() + GAP_WIDE
+
+    def _below(self) -> float:
+        """Return the height that the caption takes, px."""
+        if self._pose is None or not self._pose.caption:
+            return 0.0
+        return QFontMetricsF(self._theme.font("body")).height() + GAP
+
+    def _frame(self) -> None:
+        """Give the camera the room between the list of silent sensors and the caption."""
+        room = QRectF(self.rect()).adjusted(GAP_WIDE, GAP_WIDE, -GAP_WIDE, -GAP_WIDE - self._below())
+        top = 0.0 if self._pose is None else self._names.list_height(room.width(), room.height(), self._pose)
+        self._cameraman.frame(float(self.width()), self.height() - top - self._below(), top)
 
     def _paint_empty(self, painter: QPainter) -> None:
         aside = max(GAP_WIDE, (self.width() - FORM_WIDTH / 2 * self._theme.text_scale) / 2)

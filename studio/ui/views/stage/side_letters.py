@@ -1,0 +1,86 @@
+"""Letters that tell left from right: a round L and a square R at hands and feet."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QColor, QPainter, QPixmap
+
+from studio.ui.theme import Theme
+from studio.ui.views.stage.body_parts import Part
+from studio.ui.views.stage.outlines import Outlines
+
+LETTERED = ("hand", "toes")
+SMALL_FIGURE = 160.0  # px; of a figure that is less high only the feet get letters
+OF_SMALL, OF_LARGE = 0.06, 0.028  # of the figure's height; a letter is between these, if it can one and a half captions
+LEAST = 16.0  # px
+
+
+class Letters(NamedTuple):
+    """The letters of both sides in the language of the window."""
+
+    left: str
+    right: str
+
+
+class SideLetters:
+    """Draws each letter once."""
+
+    def __init__(self, theme: Theme) -> None:
+        self._theme = theme
+        self._badges: dict[tuple[bool, int, Letters, float], QPixmap] = {}
+
+    def placed(
+        self, parts: Sequence[Part], seen: Outlines, letters: Letters, ratio: float
+    ) -> dict[int, tuple[QPointF, QPixmap]]:
+        """Return the letters and their upper left corners, px, by part; ``ratio`` is the screen's."""
+        rows = list(seen.order)
+        height = float(np.ptp(seen.edges[rows][..., 1])) if rows else 0.0
+        usual = min(max(height * OF_SMALL, LEAST), self._theme.pixels("caption") * 1.5)
+        size = round(max(usual, height * OF_LARGE))
+        placed = {}
+        for row in rows:
+            part = parts[row]
+            if part.name not in LETTERED or (part.name == "hand" and height < SMALL_FIGURE):
+                continue
+            corner = _beyond(seen, row, 0.75 * size) - QPointF(size / 2, size / 2)
+            placed[row] = (corner, self._badge(part.tone == "left", size, letters, ratio))
+        return placed
+
+    def _badge(self, is_left: bool, size: int, letters: Letters, ratio: float) -> QPixmap:
+        """Return a letter on its ground; drawn once for each size."""
+        key = (is_left, size, letters, ratio)
+        if key not in self._badges:
+            self._badges[key] = self._drawn(*key)
+        return self._badges[key]
+
+    def _drawn(self, is_left: bool, size: int, letters: Letters, ratio: float) -> QPixmap:
+        tokens = self._theme.tokens
+        badge = QPixmap(round(size * ratio), round(size * ratio))
+        badge.setDevicePixelRatio(ratio)
+        badge.fill(Qt.GlobalColor.transparent)
+        box = QRectF(0.0, 0.0, size, size)
+        painter = QPainter(badge)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(QColor(tokens.left if is_left else tokens.right))
+        if is_left:
+            painter.drawEllipse(box)
+        else:
+            painter.drawRoundedRect(box, 2.0, 2.0)
+        font = self._theme.font("caption", bold=True)
+        font.setPixelSize(round(size / 1.5))
+        painter.setFont(font)
+        painter.setPen(QColor(tokens.on_accent))
+        painter.drawText(box, Qt.AlignmentFlag.AlignCenter, letters.left if is_left else letters.right)
+        painter.end()
+        return badge
+
+
+def _beyond(seen: Outlines, row: int, distance: float) -> QPointF:
+    """Return the point ``distance`` px beyond the lower end of a part."""
+    along, middle = seen.along[row], seen.middles[row]
+    reach = float(((seen.edges[row] - middle) @ along).max())
+    x, y = (middle + along * (reach + distance)).tolist()
+    return QPointF(x, y)
