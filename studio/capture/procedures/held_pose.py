@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import NamedTuple
 
-from studio.capture.procedures.judged_hold import Judged, LimbResult, limb_results, merged
+from studio.capture.procedures.judged_hold import Judged, LimbResult, limb_results
 from studio.core.body import Place
 from studio.core.errors import AlignmentError, HeadingsUnknown, PoseTooShort
 from studio.core.take import Alignment, Mark, PoseName
@@ -92,7 +92,7 @@ class HeldPose:
         self.pose: PoseName = self.sequence[0]
         self.only: frozenset[Place] = frozenset()
         self.alignment: Alignment | None = None
-        """All limbs, those of repeated holds put in."""
+        """The last answer that can be used."""
         self.outcome: Outcome | None = None
         self.done: tuple[PoseName, ...] = ()
         """The poses of the sequence that were held well enough."""
@@ -181,12 +181,9 @@ class HeldPose:
         if self.phase is not Phase.JUDGING or not self._asked:
             return ()
         alignment, error = judged
-        repeated = bool(self.only) and self.alignment is not None
-        if alignment is not None and self.alignment is not None and repeated:
-            alignment = merged(self.alignment, alignment, self.only)
+        shown = alignment or (self.alignment if self.only else None)
         if alignment is not None:
             self.alignment = alignment
-        shown = self.alignment if repeated else alignment
         self.outcome = Outcome(self.pose, limb_results(shown, error), error)
         if isinstance(error, PoseTooShort) and error.pose != self.pose:
             self.done = ()  # the reference lies too far back: it must be held again

@@ -54,15 +54,79 @@ def _result(place: Place, limb: LimbAlignment) -> LimbResult:
     return LimbResult(place, math.degrees(limb.spread), grade, limb.source, sigma)
 
 
-def poses_with(poses: Sequence[Mark], held: Mark) -> tuple[Mark, ...]:
-    """Return the poses in force once ``held`` has been held: it replaces its like.
+class BodyHolds:
+    """The holds in force: of the whole body, and of limbs that were repeated alone."""
 
-    A new reference begins everything anew: what was held after the old one may have been held with other straps.
-    """
-    reference = reference_mark(poses)
-    if reference is not None and reference.label == held.label:
-        return (held,)
-    return (*(mark for mark in poses if mark.label != held.label), held)
+    def __init__(self) -> None:
+        self._whole: dict[str, Mark] = {}
+        self._repeated: dict[Place, dict[str, Mark]] = {}
+
+    @property
+    def poses(self) -> tuple[Mark, ...]:
+        """The holds of the whole body, in the order of time."""
+        return tuple(sorted(self._whole.values(), key=lambda mark: mark.time))
+
+    def clear(self) -> None:
+        """Forget all: other sensors, other places."""
+        self._whole.clear()
+        self._repeated.clear()
+
+    def add(self, held: Mark, only: Collection[Place] = ()) -> None:
+        """A pose was held: it replaces its like, for some limbs only or for all.
+
+        A new reference of the whole body begins everything anew: what was held after the old one may have
+        been held with other straps.
+        """
+        if only and held.label in self._whole:
+            for place in only:
+                self._repeated.setdefault(place, {})[held.label] = held
+            return
+        reference = reference_mark(self.poses)
+        if reference is not None and reference.label == held.label:
+            self.clear()
+        self._whole[held.label] = held
+        for limb in self._repeated.values():
+            limb.pop(held.label, None)
+
+    def judge(self, tracks: Tracks, assignment: Assignment, mounting: Mounting, take_s: float) -> Judged:
+        """Return the alignment of all limbs that held still, and which did not."""
+        alignment, error = judge(tracks, assignment, self.poses, mounting, take_s)
+        if alignment is None:
+            return Judged(None, error)
+        moved = _moved_in(error)
+        pose = alignment.pose
+        for marks, places in self._groups():
+            poses = sorted((self._whole | marks).values(), key=lambda mark: mark.time)
+            fresh = judge(tracks, assignment, poses, mounting, take_s, places)
+            if fresh.alignment is None and not isinstance(fresh.error, MovedDuringHold):
+                return Judged(alignment, fresh.error)
+            moved = {name: degrees for name, degrees in moved.items() if Place(name) not in places}
+            moved |= _moved_in(fresh.error)
+            if fresh.alignment is not None:
+                alignment = merged(alignment, fresh.alignment, places)
+        return Judged(alignment, _blamed(pose, moved) or _without_headings(alignment))
+
+    def _groups(self) -> list[tuple[dict[str, Mark], list[Place]]]:
+        groups: list[tuple[dict[str, Mark], list[Place]]] = []
+        for place, marks in self._repeated.items():
+            known = next((places for held, places in groups if held == marks), None)
+            if known is not None:
+                known.append(place)
+            elif marks:
+                groups.append((marks, [place]))
+        return groups
+
+
+def _moved_in(error: AlignmentError | None) -> dict[str, float]:
+    return dict(zip(error.places, error.degrees, strict=True)) if isinstance(error, MovedDuringHold) else {}
+
+
+def _without_headings(alignment: Alignment) -> AlignmentError | None:
+    try:
+        require_headings(alignment)
+    except AlignmentError as error:
+        return error
+    return None
 
 
 def judge(
@@ -96,17 +160,10 @@ def judge(
         except AlignmentError as error:
             return Judged(None, error)
         break
-    blamed = _blamed(pose, moved, only)
-    if blamed is not None:
-        return Judged(alignment, blamed)
-    try:
-        require_headings(alignment)
-    except AlignmentError as error:
-        return Judged(alignment, error)
-    return Judged(alignment, None)
+    return Judged(alignment, _blamed(pose, moved, only) or _without_headings(alignment))
 
 
-def _blamed(pose: str, moved: Mapping[str, float], only: Collection[Place]) -> MovedDuringHold | None:
+def _blamed(pose: str, moved: Mapping[str, float], only: Collection[Place] = ()) -> MovedDuringHold | None:
     names = tuple(place.value for place in PLACES if place.value in moved and (not only or place in only))
     return MovedDuringHold(pose, names, tuple(moved[name] for name in names)) if names else None
 

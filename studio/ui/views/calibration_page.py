@@ -27,7 +27,7 @@ from studio.ui.views.hold_display import HoldDisplay
 from studio.ui.views.hold_words import HoldWords
 from studio.ui.views.limb_table import LimbTable
 
-PANEL = 440  # px at 100 % text
+PANEL = 460  # px at 100 % text
 SHARE = 0.5  # of the page that the panel may take when text is large
 
 
@@ -227,7 +227,7 @@ class CalibrationPage(QWidget):
         self.headline.setText(now.headline)
 
     def _show_buttons(self) -> None:
-        focused = next((button for button in self._actions() if button.hasFocus()), None)
+        focused = next((button for button in self._actions() if button is self.focusWidget()), None)
         self._show_action_buttons()
         # Space and Enter go to what comes next, never to what happens to stand there now.
         if focused is not None and focused.isHidden():

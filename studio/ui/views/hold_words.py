@@ -152,7 +152,7 @@ class HoldWords(QObject):
             small = self.tr("Next the {pose}: {how}").format(pose=name.lower(), how=self.how(upcoming))
             return Now(upcoming, "✔", small, self.tr("{pose} held").format(pose=self.pose(outcome.pose)), "good")
         small = self.tr("Move a little: does the figure follow?")
-        return Now(outcome.pose, "✔", small, self.tr("Body calibrated"), "good")
+        return Now(model.hold.sequence[0], "✔", small, self.tr("Body calibrated"), "good")
 
     def _refusal(self, outcome: Outcome) -> str:
         if not outcome.answered:
