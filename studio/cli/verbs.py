@@ -57,12 +57,13 @@ def record(arguments: Namespace) -> None:
     def interrupt(number: int, frame: FrameType | None) -> None:
         runtime.call(end())
 
-    for name in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(name, interrupt)
+    before = {name: signal.signal(name, interrupt) for name in (signal.SIGINT, signal.SIGTERM)}
     try:
         recorded = _result(runtime.call(record_take(request, session, stop)))
     finally:
         runtime.stop()
+        for name, handler in before.items():
+            signal.signal(name, handler)
     print(recorded.saved.folder)
     if recorded.stopped_by is not None:
         raise recorded.stopped_by

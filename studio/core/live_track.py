@@ -9,7 +9,7 @@ from studio.core.attitude import open_estimator
 from studio.core.runs import LONGEST_BRIDGE, recorrect, uses_wire_quaternions
 from studio.core.sample import MISSING_QUATERNION, MISSING_VECTOR, Quaternion, Sample, SensorInfo, Vector
 from studio.core.take import Calibration
-from studio.core.track import CARRY_AFTER, estimator_for, prior_offset_sigma, wanted_correction
+from studio.core.track import CARRY_AFTER, LARGEST_CARRY, estimator_for, prior_offset_sigma, wanted_correction
 
 
 class LiveTrack:
@@ -21,7 +21,7 @@ class LiveTrack:
         self.attitude: Quaternion = single.IDENTITY
         """world_from_sensor; the heading is that of ``group``."""
         self.speed = 0.0
-        """rad/s."""
+        """rad/s, of the attitude: what the filter takes for offset is not turning."""
         self.group = 0
         self.run = 0
         self.last: Sample | None = None
@@ -58,7 +58,9 @@ class LiveTrack:
         self._carry = None
         if last is not None:
             self.run += 1
-            if sample.epoch == last.epoch or self.info.common_world:
+            gap = (sample.frame - last.frame) * self.info.frame_s
+            sure = prior_offset_sigma(self.info, sample.flags, self._calibration) * gap <= LARGEST_CARRY
+            if (sample.epoch == last.epoch and sure) or self.info.common_world:
                 carry = single.multiply(self.attitude, single.inverse(last.orientation))
                 self._carry = carry if math.isfinite(carry[0] + sample.orientation[0]) else None
             if self._carry is None:
@@ -71,13 +73,15 @@ class LiveTrack:
         self._step((0.0, 0.0, 0.0), sample.acceleration, sample.orientation)
 
     def _bridge(self, last: Sample, sample: Sample) -> None:
+        before = self.attitude
         missing = sample.frame - last.frame
         x, y, z = self._turned(last, sample, missing * self.info.frame_s)
         increment = (x / missing, y / missing, z / missing)
         for _ in range(missing - 1):
             self._step(increment, MISSING_VECTOR, MISSING_QUATERNION)
         self._step(increment, sample.acceleration, sample.orientation)
-        self.speed = math.hypot(*increment) / self.info.frame_s
+        turned = single.to_rotation_vector(single.multiply(single.inverse(before), self.attitude))
+        self.speed = math.hypot(*turned) / (missing * self.info.frame_s)
 
     def _turned(self, last: Sample, sample: Sample, elapsed: float) -> Vector:
         """Return the rotation vector since the last sample, rad, corrected as wanted."""

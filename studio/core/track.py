@@ -17,6 +17,7 @@ RAW_OFFSET_SIGMA = math.radians(20.0) / math.sqrt(3.0)  # rad/s; MPU-6050 data s
 FRESH_OFFSET_SIGMA = math.radians(0.03)  # rad/s; measured at rest since power-on (0.001), warming up a little since
 STORED_OFFSET_SIGMA = math.radians(0.05)  # rad/s; a stored offset after some minutes of warming up
 DEVICE_OFFSET_SIGMA = math.radians(1.0)  # rad/s; a device with a filter of its own tracks its offset
+LARGEST_CARRY = math.radians(2.0)  # what an offset may have turned a tag's own quaternion by during a gap
 CARRY_AFTER = 1.0  # s into a new run at which its heading is compared: its tilt has settled by then
 
 
@@ -149,7 +150,8 @@ def _joined(
         if index == 0:
             groups.append(0)
             continue
-        turn = carried_heading(info, runs[index - 1], attitudes[index - 1], run, attitudes[index])
+        doubt = max(float(np.abs(offset).max()), sigma)
+        turn = carried_heading(info, runs[index - 1], attitudes[index - 1], run, attitudes[index], doubt)
         if math.isfinite(turn):
             attitudes[index] = rotation.multiply(rotation.about(2, turn), attitudes[index])
         groups.append(groups[-1] if math.isfinite(turn) else groups[-1] + 1)
@@ -179,12 +181,15 @@ def carried_heading(
     before_attitude: NDArray[np.float64],
     after: Run,
     after_attitude: NDArray[np.float64],
+    doubt: float,
 ) -> float:
     """Return the turn about world z that continues the heading across a break, NaN when nothing tells.
 
-    A tag that went on integrating, or a device with a heading of its own, tells by its quaternion.
+    A tag that went on integrating tells by its quaternion, as long as an offset of ``doubt`` rad/s turned it by
+    less than 2 degrees meanwhile; a device with a heading of its own tells always.
     """
-    if before.epoch != after.epoch and not info.common_world:
+    gap = float(after.time[0] - before.time[-1])
+    if not info.common_world and (before.epoch != after.epoch or doubt * gap > LARGEST_CARRY):
         return math.nan
     settled = min(round(CARRY_AFTER / info.frame_s), len(after.time) - 1)
     expected = rotation.multiply(

@@ -11,7 +11,7 @@ from studio.core.errors import HeadingsUnknown, MovedDuringHold, NoSensorWorn, P
 from studio.core.live_solver import Solver, samples_of
 from studio.core.solver import SolveOptions, solve
 from studio.core.take import Assignment, Mark
-from tests.core.worn_sensors import BOW_HOLD, N_HOLD, RATE, procedure, worn_take
+from tests.core.worn_sensors import BOW_HOLD, N_HOLD, RATE, procedure, sensor_of, stream, worn_take
 
 LOWER = PRESETS["lower"]
 
@@ -52,8 +52,6 @@ def test_the_wearer_faces_x_at_the_hold():
 
 def test_a_constant_offset_of_the_gyroscope_is_found_in_the_hold_and_taken_out():
     take, truth = worn_take(LOWER)
-    from tests.core.worn_sensors import sensor_of, stream
-
     # A raw MPU-6050 may be off by 20 °/s; the tag integrates it into its quaternion.
     offset = (0.2, -0.3, 0.15)
     worn = [
@@ -74,10 +72,10 @@ def test_lost_samples_cost_little_because_the_tag_integrates():
     whole = worst_joint_error(solve(take).motion, truth)
     rng = np.random.default_rng(1)
     thinned = []
-    for stream in take.streams:
-        kept = np.flatnonzero(rng.random(len(stream)) > 0.05)
-        names = [n for n in stream.__slots__ if n != "info"]
-        thinned.append(replace(stream, **{name: getattr(stream, name)[kept] for name in names}))
+    for sent in take.streams:
+        kept = np.flatnonzero(rng.random(len(sent)) > 0.05)
+        names = [n for n in sent.__slots__ if n != "info"]
+        thinned.append(replace(sent, **{name: getattr(sent, name)[kept] for name in names}))
 
     motion = solve(replace(take, streams=tuple(thinned))).motion
 
@@ -91,8 +89,8 @@ def test_live_is_the_solver_stepped_sample_by_sample():
     replayed = solve(take, SolveOptions(method="live"))
 
     solver = Solver(take.setup, "vqf", {})
-    for stream in take.streams:
-        solver.add_sensor(stream.info)
+    for sent in take.streams:
+        solver.add_sensor(sent.info)
     solver_frames = [frame for sample in samples_of(take) for frame in solver.push(sample)]
     solver.use(replayed.motion.alignment)
     poses = [pose for frame in solver_frames if (pose := solver.pose(frame)) is not None]
@@ -166,6 +164,44 @@ def test_a_silent_second_is_bridged_and_a_longer_silence_is_not():
     assert not measured[int(15.1 * RATE) : int(16.9 * RATE)].any()
     # The tag went on integrating: its heading is carried across.
     assert measured[int(17.1 * RATE) :].all()
+
+
+def raw(take, truth, offset):
+    """Return the take as tags would send it whose offset nobody has measured."""
+    worn = [
+        stream(
+            sensor_of(place), rotation.multiply(truth[place], [0.5, 0.5, -0.5, 0.5]), take.streams[0].time, bias=offset
+        )
+        for place in LOWER
+    ]
+    return replace(take, streams=tuple(worn))
+
+
+def test_a_raw_offset_is_not_taken_for_moving_while_the_pose_is_held_live():
+    take, truth = worn_take(LOWER)
+
+    motion = solve(raw(take, truth, (0.2, -0.25, 0.15)), SolveOptions(method="live")).motion
+
+    assert worst_joint_error(motion, truth, slice(int(6 * RATE), int(9 * RATE))) < 5.0  # found in 2 s of standing
+
+
+@pytest.mark.parametrize("method", ["offline", "live"])
+def test_across_a_long_silence_a_raw_offset_leaves_the_heading_unknown(method):
+    take, truth = worn_take(LOWER)
+    loose = raw(take, truth, (0.2, -0.25, 0.15))
+    row = LOWER.index(Place.RIGHT_THIGH)
+    thigh = loose.streams[row]
+    kept = np.ones(len(thigh), bool)
+    kept[int(15 * RATE) : int(17 * RATE)] = False
+    names = [n for n in thigh.__slots__ if n != "info"]
+    streams = list(loose.streams)
+    streams[row] = replace(thigh, **{name: getattr(thigh, name)[kept] for name in names})
+
+    motion = solve(replace(loose, streams=tuple(streams)), SolveOptions(method=method)).motion
+
+    measured = motion.measured[Place.RIGHT_THIGH]
+    assert measured[motion.time < 14.9].all()
+    assert not measured[motion.time > 17.1].any()
 
 
 def test_without_a_marked_pose_the_first_second_is_taken_and_the_motion_says_so():
