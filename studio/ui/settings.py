@@ -63,7 +63,7 @@ class Settings(QObject):
             return default
         read, is_legal = _READ[name]
         # What stands in the file may have been typed by anybody.
-        with contextlib.suppress(ValueError, TypeError, AttributeError, RecursionError):
+        with contextlib.suppress(ValueError, TypeError, KeyError, AttributeError, RecursionError):
             value = read(stored)
             if is_legal(value):
                 return value

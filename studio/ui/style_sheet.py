@@ -73,7 +73,7 @@ def _values(theme: Theme) -> dict[str, object]:
         "rec": t.rec,
         "on_accent": t.on_accent,
         # Edges of fields must be seen (3:1), and shall be quieter than their text.
-        "edge": mixed(t.muted, t.panel, 0.30),
+        "edge": mixed(t.muted, t.panel, 0.24),
         "hover": mixed(t.raised, t.text, 0.07),
         "pressed": mixed(t.raised, t.text, 0.14),
         "selected": mixed(t.panel, t.accent, 0.18),

@@ -3,14 +3,13 @@
 from collections.abc import Sequence
 
 from PySide6.QtCore import QSize, Qt, Signal
-from PySide6.QtWidgets import QButtonGroup, QFrame, QHBoxLayout, QMenu, QPushButton, QToolButton, QWidget
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QMenu, QSizePolicy, QToolButton, QWidget
 
 from studio.ui.icons import SIZE, icon
 from studio.ui.models.vocabulary import Vocabulary, VocabularyName, vocabulary
 from studio.ui.theme import GAP, GAP_WIDE, GRID, Theme
 from studio.ui.views.elided import ElidedLabel
-
-VOCABULARIES: tuple[VocabularyName, ...] = ("clinic", "studio")
+from studio.ui.views.segments import Segments
 
 
 class Header(QFrame):
@@ -32,12 +31,12 @@ class Header(QFrame):
         self.words: Vocabulary = vocabulary("clinic")
         self.person = QToolButton(self)
         self.session = ElidedLabel(self)
-        self.switch = {name: QPushButton(self) for name in VOCABULARIES}
+        words = {"clinic": self.tr("Clinic"), "studio": self.tr("Studio")}
+        self.switch = Segments(words, self.tr("Words for: {word}"), self)
         self.help = QToolButton(self)
         self.menu_button = QToolButton(self)
         self.menu = QMenu(self)
         self._people_menu = QMenu(self)
-        self._group = QButtonGroup(self)
         self._build()
         self.show_people((), "")
         self.restyle()
@@ -66,7 +65,7 @@ class Header(QFrame):
     def show_vocabulary(self, name: VocabularyName) -> None:
         """Use the words of the clinic or of the studio."""
         self.words = vocabulary(name)
-        self.switch[name].setChecked(True)
+        self.switch.choose(name)
         self.show_people(self._people, self._person)
 
     def restyle(self) -> None:
@@ -83,12 +82,14 @@ class Header(QFrame):
     def _build(self) -> None:
         self.setProperty("ground", "panel")
         self.setAccessibleName(self.tr("Header"))
+        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
         self.person.setProperty("kind", "quiet")
         self.person.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
         self.person.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         self.person.setMenu(self._people_menu)
         self.session.setProperty("role", "muted")
-        self._build_switch()
+        self.switch.choose("clinic")
+        self.switch.setToolTip(self.tr("Changes words, names of takes and what is exported first"))
         for button, words in ((self.help, self.tr("Keys and help")), (self.menu_button, self.tr("Menu"))):
             button.setProperty("kind", "quiet")
             button.setAccessibleName(words)
@@ -103,28 +104,14 @@ class Header(QFrame):
         row.setSpacing(GAP)
         row.addWidget(self.person)
         row.addWidget(self.session, 1)
-        for name in VOCABULARIES:
-            row.addWidget(self.switch[name])
+        row.addWidget(self.switch)
         row.addSpacing(GAP_WIDE)
         row.addWidget(self.help)
         row.addWidget(self.menu_button)
         self._people_menu.triggered.connect(self._on_person)
         self.menu.triggered.connect(self._on_menu)
         self.help.clicked.connect(self.help_requested)
-        self._group.idClicked.connect(self._on_switched)
-
-    def _build_switch(self) -> None:
-        texts = {"clinic": self.tr("Clinic"), "studio": self.tr("Studio")}
-        for number, name in enumerate(VOCABULARIES):
-            button = self.switch[name]
-            button.setText(texts[name])
-            button.setAccessibleName(texts[name])
-            button.setAccessibleDescription(self.tr("Changes words, names of takes and what is exported first"))
-            button.setToolTip(self.tr("Changes words, names of takes and what is exported first"))
-            button.setProperty("kind", "segment")
-            button.setCheckable(True)
-            self._group.addButton(button, number)
-        self.switch["clinic"].setChecked(True)
+        self.switch.chosen.connect(self.vocabulary_changed)
 
     def _build_menu(self) -> None:
         pages = (
@@ -154,6 +141,3 @@ class Header(QFrame):
             self.page_requested.emit(name)
         elif action is self._full_screen:
             self.full_screen_requested.emit()
-
-    def _on_switched(self, number: int) -> None:
-        self.vocabulary_changed.emit(VOCABULARIES[number])

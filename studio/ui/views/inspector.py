@@ -24,22 +24,24 @@ class Inspector(QFrame):
         self.hide()
         self.restyle()
 
+    def add_panel(self, panel: QWidget | None) -> None:
+        """Take in a panel without showing it."""
+        if panel is None or panel in self._areas:
+            return
+        area = QScrollArea(self._stack)
+        area.setWidget(panel)
+        area.setWidgetResizable(True)
+        area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        area.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self._areas[panel] = area
+        self._stack.addWidget(area)
+
     def show_panel(self, panel: QWidget | None) -> None:
         """Show a panel, or nothing."""
+        self.add_panel(panel)
         self.setVisible(panel is not None)
-        if panel is None:
-            return
-        if panel not in self._areas:
-            area = QScrollArea(self._stack)
-            area.setWidget(panel)
-            area.setWidgetResizable(True)
-            area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-            area.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-            area.viewport().setAutoFillBackground(False)
-            panel.setAutoFillBackground(False)
-            self._areas[panel] = area
-            self._stack.addWidget(area)
-        self._stack.setCurrentWidget(self._areas[panel])
+        if panel is not None:
+            self._stack.setCurrentWidget(self._areas[panel])
 
     def restyle(self) -> None:
         """Take over the text size; half of it, because the page needs the room more."""

@@ -1,14 +1,13 @@
 """Text size and theme, wherever they are offered."""
 
 from PySide6.QtCore import QSize, Signal
-from PySide6.QtWidgets import QButtonGroup, QHBoxLayout, QLabel, QPushButton, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QWidget
 
 from studio.ui.icons import SIZE, icon
-from studio.ui.models.preferences import SchemeName
 from studio.ui.theme import GRID, LARGEST_TEXT, SMALLEST_TEXT, Theme
+from studio.ui.views.segments import Segments
 
 SIZES = (SMALLEST_TEXT, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, LARGEST_TEXT)
-SCHEMES: tuple[SchemeName, ...] = ("system", "light", "dark")
 
 
 def next_size(scale: float, step: int) -> float:
@@ -81,27 +80,15 @@ class SchemeChoice(QWidget):
     def __init__(self, theme: Theme, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._theme = theme
-        self._group = QButtonGroup(self)
-        self.buttons: dict[SchemeName, QPushButton] = {}
-        texts = {"system": self.tr("System"), "light": self.tr("Light"), "dark": self.tr("Dark")}
+        words = {"system": self.tr("System"), "light": self.tr("Light"), "dark": self.tr("Dark")}
+        self.segments = Segments(words, self.tr("Theme: {word}"), self)
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(GRID)
-        for number, name in enumerate(SCHEMES):
-            button = QPushButton(texts[name], self)
-            button.setProperty("kind", "segment")
-            button.setCheckable(True)
-            button.setAccessibleName(self.tr("Theme: {name}").format(name=texts[name]))
-            self._group.addButton(button, number)
-            self.buttons[name] = button
-            row.addWidget(button)
+        row.addWidget(self.segments)
         row.addStretch(1)
-        self._group.idClicked.connect(self._on_clicked)
+        self.segments.chosen.connect(self.chosen)
         self.restyle()
 
     def restyle(self) -> None:
         """Show the choice in force."""
-        self.buttons[self._theme.scheme].setChecked(True)
-
-    def _on_clicked(self, number: int) -> None:
-        self.chosen.emit(SCHEMES[number])
+        self.segments.choose(self._theme.scheme)

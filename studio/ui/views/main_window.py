@@ -58,7 +58,12 @@ class MainWindow(QWidget):
         self.rail = Rail(theme, self)
         self.banner = Banner(theme, self)
         self.stack = QStackedWidget(self)
+        # Tab goes the way the window is read: the pages before the inspector and the strip.
+        for page in self._pages.values():
+            self.stack.addWidget(page)
         self.inspector = Inspector(theme, self)
+        for page in self._pages.values():
+            self.inspector.add_panel(getattr(page, "inspector", None))
         self.strip = ReadinessStrip(theme, self)
         self.toast = Toast(theme, self.stack)
         self.sheet = Sheet(theme, self)
@@ -193,8 +198,6 @@ class MainWindow(QWidget):
     def _build(self) -> None:
         self.setMinimumSize(*LEAST)
         self.resize(1280, 800)
-        for page in self._pages.values():
-            self.stack.addWidget(page)
         middle = QVBoxLayout()
         middle.setSpacing(0)
         middle.addWidget(self.banner)

@@ -150,6 +150,7 @@ class Banner(QFrame):
         self._messages: dict[str, tuple[str, str, str, tuple[Action, ...], Tone]] = {}
         self._buttons: list[QPushButton] = []
         self.setProperty("ground", "raised")
+        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
         self._mark = QLabel(self)
         self._what, self._why, self._do = QLabel(self), QLabel(self), QLabel(self)
         self._waiting = QLabel(self)

@@ -1,7 +1,7 @@
 """The rail: six steps from the sensor to the file, always in the same place."""
 
 from PySide6.QtCore import QSize, Qt, Signal
-from PySide6.QtWidgets import QButtonGroup, QFrame, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFrame, QToolButton, QVBoxLayout, QWidget
 
 from studio.ui.icons import SIZE, icon
 from studio.ui.theme import GAP, GRID, Theme
@@ -18,8 +18,6 @@ class Rail(QFrame):
         super().__init__(parent)
         self._theme = theme
         self._shown = ""
-        self._group = QButtonGroup(self)
-        self._group.idClicked.connect(self._on_clicked)
         self.buttons: dict[str, QToolButton] = {}
         self.setProperty("ground", "panel")
         self.setAccessibleName(self.tr("Steps"))
@@ -36,7 +34,8 @@ class Rail(QFrame):
             button.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextUnderIcon)
             button.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
             button.setSizePolicy(button.sizePolicy().Policy.Expanding, button.sizePolicy().Policy.Fixed)
-            self._group.addButton(button, number - 1)
+            button.setProperty("page", name)
+            button.clicked.connect(self._on_clicked)
             self.buttons[name] = button
             column.addWidget(button)
         column.addStretch(1)
@@ -45,10 +44,8 @@ class Rail(QFrame):
     def show_page(self, name: str) -> None:
         """Mark a page; none when it is not in the rail."""
         self._shown = name
-        self._group.setExclusive(False)
         for page, button in self.buttons.items():
             button.setChecked(page == name)
-        self._group.setExclusive(name in self.buttons)
         self.restyle()
 
     def restyle(self) -> None:
@@ -69,7 +66,7 @@ class Rail(QFrame):
             "export": self.tr("Export"),
         }
 
-    def _on_clicked(self, number: int) -> None:
+    def _on_clicked(self) -> None:
         # The click has marked the button already; only the page that is shown bears the mark.
         self.show_page(self._shown)
-        self.page_requested.emit(PAGES[number])
+        self.page_requested.emit(self.sender().property("page"))

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtGui import QFontMetrics
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QPushButton, QWidget
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QPushButton, QSizePolicy, QWidget
 
 from studio.ui.icons import SIZE, icon
 from studio.ui.models.readiness import ReadinessState, StripPhase, clock
@@ -81,6 +81,7 @@ class ReadinessStrip(QFrame):
         self._facts = (self.sensors, self.calibrated, self.loss, self.disk, self.buffer, self.next_take)
         self.setProperty("ground", "panel")
         self.setAccessibleName(self.tr("Readiness"))
+        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
         self.state.setProperty("kind", "state")
         self.items.setProperty("kind", "state")
         self.items.setProperty("state", "check")
@@ -134,6 +135,8 @@ class ReadinessStrip(QFrame):
         }
         self.state.setIcon(icon(_SHAPES[state.phase], colours[state.phase], self.state.iconSize().width()))
         set_look(self.state, state=state.phase.value)
+        # Without the clock: a name that changes ten times a second cannot be heard.
+        self.state.setAccessibleName(self._name(state.phase))
         asks = bool(state.problems) and state.phase in ANSWERABLE
         self.state.setFocusPolicy(Qt.FocusPolicy.StrongFocus if asks else Qt.FocusPolicy.NoFocus)
         self.state.setAccessibleDescription(self.tr("Press to see what to do.") if asks else "")
@@ -185,6 +188,11 @@ class ReadinessStrip(QFrame):
             StripPhase.PROBLEM: self.tr("PROBLEM"),
         }
         return words[state.phase]
+
+    def _name(self, phase: StripPhase) -> str:
+        if phase is StripPhase.RECORDING:
+            return self.tr("Recording")
+        return self.tr("Countdown") if phase is StripPhase.COUNTDOWN else self._word(self._state)
 
     def _items_in_words(self, count: int) -> str:
         return self.tr("1 item") if count == 1 else self.tr("{count} items").format(count=count)

@@ -4,7 +4,6 @@ from collections.abc import Iterable
 
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import (
-    QButtonGroup,
     QCheckBox,
     QComboBox,
     QFrame,
@@ -18,16 +17,13 @@ from PySide6.QtWidgets import (
 )
 
 from studio.ui.keys import Key
-from studio.ui.models.preferences import Preferences, SeenFrom
+from studio.ui.models.preferences import Preferences
 from studio.ui.models.recorder import DELAYS
-from studio.ui.models.vocabulary import VocabularyName
 from studio.ui.theme import FORM_WIDTH, GAP, GAP_PAGE, GAP_WIDE, GRID, Theme
 from studio.ui.views.elided import ElidedLabel
 from studio.ui.views.key_settings import KeySettings
 from studio.ui.views.look_controls import SchemeChoice, TextSize
-
-VOCABULARIES: tuple[VocabularyName, ...] = ("clinic", "studio")
-SIDES: tuple[SeenFrom, ...] = ("front", "behind")
+from studio.ui.views.segments import Segments
 
 
 class SettingsPage(QFrame):
@@ -49,7 +45,8 @@ class SettingsPage(QFrame):
         self.scheme = SchemeChoice(theme, self)
         self.text_size = TextSize(theme, self)
         self.reduced_motion = QCheckBox(self.tr("Reduce motion: no animations"), self)
-        self.vocabulary = [QPushButton(words, self) for words in (self.tr("Clinic"), self.tr("Studio"))]
+        words = {"clinic": self.tr("Clinic"), "studio": self.tr("Studio")}
+        self.vocabulary = Segments(words, self.tr("Words for: {word}"), self)
         self.library = ElidedLabel(self)
         self.choose_library = QPushButton(self.tr("Choose…"), self)
         self.show_library = QPushButton(self.tr("Show"), self)
@@ -58,10 +55,10 @@ class SettingsPage(QFrame):
         self.sound = QCheckBox(self.tr("Sounds: countdown, done, and trouble"), self)
         self.volume = QSlider(Qt.Orientation.Horizontal, self)
         self.test_sound = QPushButton(self.tr("Test"), self)
-        self.seen_from = [QPushButton(words, self) for words in (self.tr("Face me"), self.tr("From behind"))]
+        words = {"front": self.tr("Face me"), "behind": self.tr("From behind")}
+        self.seen_from = Segments(words, self.tr("Body map: {word}"), self)
         self.keys = KeySettings(theme, self)
         self._labels: list[QLabel] = []
-        self._groups = (QButtonGroup(self), QButtonGroup(self))
         self._build()
         self._name()
         self._wire()
@@ -74,7 +71,7 @@ class SettingsPage(QFrame):
         for control in controls:
             control.blockSignals(True)
         self.reduced_motion.setChecked(preferences.reduced_motion)
-        self.vocabulary[VOCABULARIES.index(preferences.vocabulary)].setChecked(True)
+        self.vocabulary.choose(preferences.vocabulary)
         self.library.set_words(library)
         self.delay.setCurrentIndex(DELAYS.index(preferences.delay))
         self.clicker.setChecked(preferences.clicker)
@@ -82,7 +79,7 @@ class SettingsPage(QFrame):
         self.volume.setValue(round(preferences.volume * 100))
         self.volume.setEnabled(preferences.sound)
         self.test_sound.setEnabled(preferences.sound)
-        self.seen_from[SIDES.index(preferences.seen_from)].setChecked(True)
+        self.seen_from.choose(preferences.seen_from)
         for control in controls:
             control.blockSignals(False)
         self.scheme.restyle()
@@ -138,9 +135,9 @@ class SettingsPage(QFrame):
         self._line(column, self.tr("Text size"), self.text_size)
         column.addWidget(self.reduced_motion)
         self._section(column, self.tr("Words"))
-        self._line(column, self.tr("Words for"), *self.vocabulary)
+        self._line(column, self.tr("Words for"), self.vocabulary)
         self._hint(column, self.tr("Changes words, names of takes and what is exported first. All functions stay."))
-        self._line(column, self.tr("Body map"), *self.seen_from)
+        self._line(column, self.tr("Body map"), self.seen_from)
 
     def _build_recording(self, column: QVBoxLayout) -> None:
         self._section(column, self.tr("Recording"))
@@ -158,13 +155,7 @@ class SettingsPage(QFrame):
         self._line(column, self.tr("Volume"), self.volume, self.test_sound)
 
     def _name(self) -> None:
-        for button in (*self.vocabulary, *self.seen_from):
-            button.setProperty("kind", "segment")
-            button.setCheckable(True)
-        for group, buttons in zip(self._groups, (self.vocabulary, self.seen_from), strict=True):
-            for number, button in enumerate(buttons):
-                group.addButton(button, number)
-        for choice in (*self.vocabulary, *self.seen_from, self.reduced_motion, self.clicker, self.sound):
+        for choice in (self.reduced_motion, self.clicker, self.sound):
             choice.setAccessibleName(choice.text())
         self.choose_library.setAccessibleName(self.tr("Choose the folder of the takes"))
         self.show_library.setAccessibleName(self.tr("Show the folder of the takes"))
@@ -176,8 +167,8 @@ class SettingsPage(QFrame):
         self.scheme.chosen.connect(self._on_scheme)
         self.text_size.chosen.connect(self._on_text_scale)
         self.reduced_motion.toggled.connect(self._on_reduced_motion)
-        self._groups[0].idClicked.connect(self._on_vocabulary)
-        self._groups[1].idClicked.connect(self._on_seen_from)
+        self.vocabulary.chosen.connect(self._on_vocabulary)
+        self.seen_from.chosen.connect(self._on_seen_from)
         self.choose_library.clicked.connect(self.library_wanted)
         self.show_library.clicked.connect(self.library_shown)
         self.delay.activated.connect(self._on_delay)
@@ -223,11 +214,11 @@ class SettingsPage(QFrame):
     def _on_reduced_motion(self, on: bool) -> None:
         self.changed.emit("reduced_motion", on)
 
-    def _on_vocabulary(self, number: int) -> None:
-        self.changed.emit("vocabulary", VOCABULARIES[number])
+    def _on_vocabulary(self, name: str) -> None:
+        self.changed.emit("vocabulary", name)
 
-    def _on_seen_from(self, number: int) -> None:
-        self.changed.emit("seen_from", SIDES[number])
+    def _on_seen_from(self, side: str) -> None:
+        self.changed.emit("seen_from", side)
 
     def _on_delay(self, number: int) -> None:
         self.changed.emit("delay", DELAYS[number])
