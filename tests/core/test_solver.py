@@ -272,8 +272,9 @@ def test_unmeasured_segments_follow_the_stated_rules():
     motion = solve(take).motion
 
     hips, chest = motion.world_from_segment[:, Segment.Hips], motion.world_from_segment[:, Segment.Spine3]
-    middle = rotation.slerp(hips, chest, np.full(len(motion), 0.5))
-    assert rotation.angle_between(middle, motion.world_from_segment[:, Segment.Spine1]).max() < 1e-9
+    for spine, fraction in ((Segment.Spine, 0.25), (Segment.Spine1, 0.5), (Segment.Spine2, 0.75)):
+        between = rotation.slerp(hips, chest, np.full(len(motion), fraction))
+        assert rotation.angle_between(between, motion.world_from_segment[:, spine]).max() < 1e-9
     for rigid in (Segment.Neck, Segment.Head, Segment.LeftArm, Segment.RightHand):
         assert rotation.angle_between(chest, motion.world_from_segment[:, rigid]).max() < 1e-9
     assert rotation.angle_between(hips, motion.world_from_segment[:, Segment.RightFoot]).max() < 1e-9
