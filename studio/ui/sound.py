@@ -5,6 +5,7 @@ import sys
 import wave
 from collections.abc import Mapping
 from enum import Enum
+from io import BytesIO
 from pathlib import Path
 
 import numpy as np
@@ -70,19 +71,27 @@ class Sound(QObject):
         # Players talk about missing devices on the terminal of whoever started the studio.
         process.setStandardOutputFile(QProcess.nullDevice())
         process.setStandardErrorFile(QProcess.nullDevice())
-        return bool(process.startDetached()[0])
+        # PySide6 6.10 returns a truth value here, its type stub promises a pair.
+        started: object = process.startDetached()
+        return bool(started[0] if isinstance(started, tuple) else started)
 
     def _file(self, tone: Tone) -> Path:
         if self._folder is None:
             self._folder = QTemporaryDir()  # goes away with this object
         file = Path(self._folder.path()) / f"{tone.name.lower()}-{round(self.volume * 100)}.wav"
         if not file.exists():
-            with wave.open(str(file), "wb") as out:
-                out.setnchannels(1)
-                out.setsampwidth(2)
-                out.setframerate(SAMPLE_RATE)
-                out.writeframes(samples(tone, self.volume).tobytes())
+            file.write_bytes(_wave_file(samples(tone, self.volume)))
         return file
+
+
+def _wave_file(mono: np.ndarray[tuple[int], np.dtype[np.int16]]) -> bytes:
+    memory = BytesIO()
+    with wave.open(memory, "wb") as out:
+        out.setnchannels(1)
+        out.setsampwidth(2)
+        out.setframerate(SAMPLE_RATE)
+        out.writeframes(mono.tobytes())
+    return memory.getvalue()
 
 
 def samples(tone: Tone, volume: float) -> np.ndarray[tuple[int], np.dtype[np.int16]]:

@@ -28,7 +28,7 @@ from studio.ui.views.hold_words import HoldWords
 from studio.ui.views.limb_table import LimbTable
 
 PANEL = 460  # px at 100 % text
-SHARE = 0.5  # of the page that the panel may take when text is large
+SHARE = 0.58  # of the page that the panel may take when text is large
 
 
 class CalibrationPage(QWidget):
@@ -105,6 +105,7 @@ class CalibrationPage(QWidget):
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 (Qt's name)
         """Share the width anew."""
         self._fit_panel()
+        self._shorten_steps()
 
     def _fit_panel(self) -> None:
         wanted = round(PANEL * max(self._theme.text_scale, 1.0))
@@ -114,8 +115,8 @@ class CalibrationPage(QWidget):
         self._steps = QHBoxLayout()
         self._steps.setContentsMargins(GAP_PAGE, GAP_WIDE, GAP_PAGE, GAP)
         self._steps.setSpacing(GAP_WIDE)
-        self._step_labels = [QLabel(self) for _ in range(4)]
-        for label in self._step_labels:
+        self.step_labels = [QLabel(self) for _ in range(4)]
+        for label in self.step_labels:
             self._steps.addWidget(label)
         self._steps.addStretch(1)
         left = QVBoxLayout()
@@ -211,10 +212,22 @@ class CalibrationPage(QWidget):
 
     def _show_steps(self) -> None:
         steps = self._model.steps()
-        for number, (label, (name, state)) in enumerate(zip(self._step_labels, steps, strict=True), 1):
+        for number, (label, (name, state)) in enumerate(zip(self.step_labels, steps, strict=True), 1):
             label.setText(self._said.step(number, name, state))
+            label.setAccessibleName(label.text())
             look = {"now": ("section", "accent"), "done": ("", "good"), "todo": ("muted", "")}[state]
             set_look(label, role=look[0], tone=look[1])
+        self._shorten_steps()
+
+    def _shorten_steps(self) -> None:
+        """Leave the other steps' names out where large text has no room for them."""
+        for label in self.step_labels:
+            label.setText(label.accessibleName())
+        needed = sum(label.sizeHint().width() + GAP_WIDE for label in self.step_labels)
+        if needed > self.width() - self._panel.width() - 2 * GAP_PAGE:
+            for label in self.step_labels:
+                if label.property("tone") != "accent":
+                    label.setText(label.text()[:1])
 
     def _show_now(self) -> None:
         model = self._model

@@ -15,6 +15,7 @@ from studio.ui.views.body_shapes import HEIGHT, fitted, pose_arm, pose_lines, po
 FLASH = 0.15  # s
 FLASH_GAP = 0.34  # s from one flash to the next: under 3 a second
 RING = 14.0  # px
+SENTENCE = 22  # px; large text gives way to the ring down to this
 NUMBER = 0.46  # of the ring's diameter
 
 
@@ -100,7 +101,9 @@ class HoldDisplay(QWidget):
         painter.end()
 
     def _paint_sentence(self, painter: QPainter) -> QRectF:
-        painter.setFont(self._theme.font("page"))
+        font = self._theme.font("page")
+        font.setPixelSize(min(font.pixelSize(), max(SENTENCE, self.width() // 13)))
+        painter.setFont(font)
         painter.setPen(QColor(self._theme.tokens.text))
         flags = int(Qt.AlignmentFlag.AlignHCenter | Qt.AlignmentFlag.AlignTop | Qt.TextFlag.TextWordWrap)
         room = QRectF(self.rect()).adjusted(GAP_PAGE, 0, -GAP_PAGE, 0)
