@@ -1,5 +1,6 @@
 """Our own icons: line drawings of 20 px, tinted by a colour of the theme."""
 
+from functools import cache
 from pathlib import Path
 
 from PySide6.QtCore import QByteArray, QRectF, QSize, Qt
@@ -19,7 +20,7 @@ def icon_file(name: str) -> Path:
 
 def pixmap(name: str, colour: str, size: int = SIZE) -> QPixmap:
     """Return an icon in ``colour`` (``#RRGGBB``), ``size`` px high, sharp on this screen."""
-    drawing = icon_file(name).read_text(encoding="utf-8").replace(_INK, colour)
+    drawing = _drawing(name).replace(_INK, colour)
     ratio = QGuiApplication.primaryScreen().devicePixelRatio()
     canvas = QPixmap(QSize(round(size * ratio), round(size * ratio)))
     canvas.fill(Qt.GlobalColor.transparent)
@@ -33,3 +34,8 @@ def pixmap(name: str, colour: str, size: int = SIZE) -> QPixmap:
 def icon(name: str, colour: str, size: int = SIZE) -> QIcon:
     """Return an icon for a button."""
     return QIcon(pixmap(name, colour, size))
+
+
+@cache
+def _drawing(name: str) -> str:
+    return icon_file(name).read_text(encoding="utf-8")

@@ -185,7 +185,7 @@ QPushButton[state="recording"] { color: $on_accent; background-color: $rec; }
 
 QToolButton[kind="rail"] {
     color: $muted; background-color: transparent; font-size: ${caption_px}px; border: ${focus}px solid transparent;
-    border-left: 4px solid transparent; padding: ${gap}px ${grid}px;
+    border-left: 4px solid transparent; padding: ${gap}px ${grid}px; min-height: 24px;
 }
 QToolButton[kind="rail"]:hover { color: $text; background-color: $hover; }
 QToolButton[kind="rail"]:checked { color: $text; background-color: $selected; border-left-color: $accent; }

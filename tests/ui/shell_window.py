@@ -71,11 +71,13 @@ def shell(qtbot, scheme: Scheme = "dark", text_scale: float = 1.0) -> Iterator[S
     qtbot.addWidget(shown.window)
     shown.window.resize(1280, 800)
     shown.window.show_page("capture")
-    with qtbot.waitActive(shown.window):
-        shown.window.show()
-        shown.window.activateWindow()
-    yield shown
-    shown.window.close_now()
-    application.setStyleSheet("")
-    application.setPalette(before[0])
-    application.setFont(before[1])
+    try:
+        with qtbot.waitActive(shown.window):
+            shown.window.show()
+            shown.window.activateWindow()
+        yield shown
+    finally:
+        shown.window.close_now()
+        application.setStyleSheet("")
+        application.setPalette(before[0])
+        application.setFont(before[1])

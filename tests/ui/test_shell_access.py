@@ -103,6 +103,7 @@ def test_no_text_is_cut(qtbot, page, scale):
     with shell(qtbot, "light", scale) as made:
         made.window.show_page(page)
         busy(made)
+        made.window.toast.say("Take 004 saved and verified · 00:42 · loss 0.1 %", (Action("review", "Review"),))
         for _ in range(3):
             QApplication.processEvents()
         cut = [
@@ -114,6 +115,15 @@ def test_no_text_is_cut(qtbot, page, scale):
 
         assert cut == []
         assert (made.window.width(), made.window.height()) == (1280, 800)
+
+
+def test_in_a_low_window_large_words_stay_and_icons_go(qtbot):
+    with shell(qtbot, text_scale=2.0) as made:
+        made.window.resize(1024, 640)
+        QApplication.processEvents()
+        cut = [b.text() for b in made.window.rail.buttons.values() if b.height() < b.sizeHint().height()]
+
+        assert cut == []
 
 
 def needs(widget):

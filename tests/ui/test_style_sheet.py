@@ -3,6 +3,7 @@
 import re
 
 import pytest
+from PySide6.QtGui import QFont
 from PySide6.QtWidgets import QPushButton
 
 from studio.ui.icons import ICONS, icon_file, pixmap
@@ -76,30 +77,38 @@ def test_edges_focus_rings_and_marks_stand_out_from_every_ground(scheme):
     assert contrast(t.on_accent, t.accent) >= TEXT
 
 
-def test_large_text_makes_larger_text_and_higher_controls(qtbot, qapp):
+@pytest.fixture
+def undressed(qapp):
+    """Let the application look as before afterwards."""
+    font, palette = QFont(qapp.font()), qapp.palette()
+    yield qapp
+    qapp.setStyleSheet("")
+    qapp.setPalette(palette)
+    qapp.setFont(font)
+
+
+def test_large_text_makes_larger_text_and_higher_controls(qtbot, undressed):
     theme, heights = theme_of("light"), []
     button = QPushButton("Use my sensors")
     qtbot.addWidget(button)
     for scale in (1.0, 2.0):
         theme.text_scale = scale
-        dress(qapp, theme)
+        dress(undressed, theme)
         button.ensurePolished()
         heights.append(button.sizeHint().height())
-    qapp.setStyleSheet("")
 
     assert heights[0] == 32
     assert heights[1] >= 44
 
 
-def test_a_look_can_change_while_it_is_shown(qtbot, qapp):
+def test_a_look_can_change_while_it_is_shown(qtbot, undressed):
     theme = theme_of("dark")
-    dress(qapp, theme)
+    dress(undressed, theme)
     button = QPushButton("Record")
     qtbot.addWidget(button)
     button.show()
     set_look(button, kind="record")
     middle = button.grab().toImage().pixelColor(6, button.height() // 2)
-    qapp.setStyleSheet("")
 
     assert middle.name().upper() == theme.tokens.rec
 

@@ -15,7 +15,7 @@ from studio.ui.views.focus import give_back
 Tone = Literal["good", "warn", "bad"]
 
 SHOWN_FOR = 2.0  # s
-TOAST_WIDTH = 560  # px at 100 %
+TOAST_WIDTH = 720  # px at 100 %
 _SHAPES: dict[Tone, str] = {"good": "ready", "warn": "warning", "bad": "problem"}
 
 
@@ -49,10 +49,10 @@ class Toast(QFrame):
         self._actions.setSpacing(GAP)
         words = QHBoxLayout()
         words.setSpacing(GAP)
-        words.addWidget(self._mark, 0, Qt.AlignmentFlag.AlignTop)
+        words.addWidget(self._mark)
         words.addWidget(self._text, 1)
         self._box = QBoxLayout(QBoxLayout.Direction.LeftToRight, self)
-        self._box.setContentsMargins(GAP_WIDE, GAP, GAP, GAP)
+        self._box.setContentsMargins(GAP_WIDE, GAP, GAP_WIDE, GAP)
         self._box.setSpacing(GAP_WIDE)
         self._box.addLayout(words, 1)
         self._box.addLayout(self._actions)
@@ -75,8 +75,8 @@ class Toast(QFrame):
         self._buttons = [_button(action, self, self._on_clicked) for action in actions]
         for button in self._buttons:
             self._actions.addWidget(button)
+        self.show()  # before its size is asked for: a layout that is hidden keeps the old one
         self.restyle()
-        self.show()
         self.raise_()
         announce(self, text)
 
@@ -97,14 +97,18 @@ class Toast(QFrame):
         most = min(round(TOAST_WIDTH * max(self._theme.text_scale, 1.0)), room.width())
         self._text.setWordWrap(False)
         self._box.setDirection(QBoxLayout.Direction.LeftToRight)
-        if self._box.sizeHint().width() > most:
+        if self._box.totalSizeHint().width() > most:
             self._box.setDirection(QBoxLayout.Direction.TopToBottom)
-        if self._box.sizeHint().width() > most:
+        if self._box.totalSizeHint().width() > most:
             self._text.setWordWrap(True)
-        width = min(self._box.sizeHint().width(), most)
+        width = min(self._box.totalSizeHint().width(), most)
         if self._text.wordWrap():
             width = most
-        height = self._box.heightForWidth(width) if self._box.hasHeightForWidth() else self._box.sizeHint().height()
+        height = (
+            self._box.totalHeightForWidth(width)
+            if self._box.hasHeightForWidth()
+            else self._box.totalSizeHint().height()
+        )
         size = QSize(width, height)
         lower = QRect(QPoint(room.left(), room.bottom() - size.height()), size)
         upper = QRect(room.topLeft(), size)

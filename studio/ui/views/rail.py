@@ -1,6 +1,7 @@
 """The rail: six steps from the sensor to the file, always in the same place."""
 
 from PySide6.QtCore import QSize, Qt, Signal
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QFrame, QToolButton, QVBoxLayout, QWidget
 
 from studio.ui.icons import SIZE, icon
@@ -31,7 +32,6 @@ class Rail(QFrame):
             button.setAccessibleName(words)
             button.setAccessibleDescription(self.tr("Step {number} of 6").format(number=number))
             button.setCheckable(True)
-            button.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextUnderIcon)
             button.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
             button.setSizePolicy(button.sizePolicy().Policy.Expanding, button.sizePolicy().Policy.Fixed)
             button.setProperty("page", name)
@@ -48,6 +48,11 @@ class Rail(QFrame):
             button.setChecked(page == name)
         self.restyle()
 
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 (Qt's name)
+        """Leave the icons out where there is no room for icon and word: the word tells more."""
+        super().resizeEvent(event)
+        self._make_room()
+
     def restyle(self) -> None:
         """Take over colours and text size."""
         tokens = self._theme.tokens
@@ -55,6 +60,16 @@ class Rail(QFrame):
         for name, button in self.buttons.items():
             button.setIconSize(QSize(size, size))
             button.setIcon(icon(name, tokens.accent if name == self._shown else tokens.muted, size))
+        self._make_room()
+
+    def _make_room(self) -> None:
+        style = Qt.ToolButtonStyle
+        for shape in (style.ToolButtonTextUnderIcon, style.ToolButtonTextOnly):
+            for button in self.buttons.values():
+                button.setToolButtonStyle(shape)
+            needed = sum(button.sizeHint().height() + GRID for button in self.buttons.values()) + 2 * GAP
+            if needed <= self.height():
+                return
 
     def _words(self) -> dict[str, str]:
         return {
