@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from studio.analysis.joint_angles import JointAngle, joint_angles
+from studio.analysis.joint_angles import JointAngle, Side, joint_angles
 from studio.core.body import MEASURED_PARENT, PLACES, Place
 from studio.core.pose import Motion
 from studio.core.take import Alignment, HeadingSource, Mark
@@ -161,7 +161,8 @@ def in_words(name: str) -> str:
     return name.replace("_", " ").capitalize()
 
 
-def side_of(name: str) -> str:
-    """Return ``left``, ``right`` or an empty word."""
-    side = name.partition("_")[0]
-    return side if side in ("left", "right") else ""
+def side_of(name: str) -> Side:
+    """Return on which side of the body an angle is."""
+    if name.startswith("left_"):
+        return "left"
+    return "right" if name.startswith("right_") else ""
