@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from PySide6.QtCore import QObject, Signal
 
 from studio.capture.live_buffer import Window
@@ -17,7 +18,8 @@ from studio.core.rest import BLOCK, RATE_SPREAD_TABLE, WINDOW, Rest, find_rest
 from studio.core.sample import SensorId, SensorInfo
 
 NEEDED = 10.0  # s without a movement
-LATEST = (WINDOW + 1) * BLOCK  # s looked at for a movement just now; one block more for those that fall between
+QUIET = RATE_SPREAD_TABLE / 2  # rad/s; nobody confirms what is measured here, so that it asks for more than the solver
+MOST_LOOKS = 16  # sensors each time: 6 ms of the window's thread
 PAUSE = 0.5  # s without a sample: what happened meanwhile is not known
 
 
@@ -54,12 +56,14 @@ class RestWatch(QObject):
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._sensors: dict[SensorId, _Sensor] = {}
+        self._turn = 0
 
     def feed(self, windows: Mapping[SensorId, Window], infos: Mapping[SensorId, SensorInfo]) -> None:
         """Look at the newest samples; ``windows`` reach back at least eleven seconds."""
         for gone in self._sensors.keys() - windows.keys():
             del self._sensors[gone]
-        for sensor, window in windows.items():
+        self._turn += MOST_LOOKS
+        for sensor, window in _in_turn(windows, self._turn):
             info = infos.get(sensor)
             if info is not None and info.has_rate and len(window.time):
                 self._look(sensor, window, info.frame_s)
@@ -97,22 +101,43 @@ class RestWatch(QObject):
     def _look(self, sensor: SensorId, window: Window, frame_s: float) -> None:
         known = self._sensors.setdefault(sensor, _Sensor())
         known.newest = float(window.time[-1])
-        latest = _rest(window, known.newest - LATEST, frame_s)
-        known.is_still = latest is not None
+        latest = _latest(window, frame_s)
+        known.is_still = _rest(latest, frame_s) is not None
         if not known.is_still:
             known.since = math.inf
             return
         if math.isinf(known.since):
-            known.since = known.newest - LATEST
+            known.since = float(latest.time[0])
         known.since = max(known.since, _unbroken_since(window))
         if known.rest is not None or known.newest - known.since < NEEDED:
             return
-        rest = _rest(window, known.newest - NEEDED, frame_s)
+        first = int(np.searchsorted(window.time, known.newest - NEEDED))
+        rest = _rest(_Readings(window.time[first:], window.rate[first:], window.acceleration[first:]), frame_s)
         if rest is None:
-            known.since = known.newest - LATEST
+            known.since = float(latest.time[0])
             return
         known.rest = rest
         self.rested.emit(sensor, rest)
+
+
+def _in_turn(windows: Mapping[SensorId, Window], turn: int) -> list[tuple[SensorId, Window]]:
+    """Return the windows to look at now: with many sensors not all of them each time."""
+    both = [*windows.items()]
+    if len(both) <= MOST_LOOKS:
+        return both
+    return [both[(turn + row) % len(both)] for row in range(MOST_LOOKS)]
+
+
+class _Readings(NamedTuple):
+    time: NDArray[np.float64]
+    rate: NDArray[np.float64]
+    acceleration: NDArray[np.float64]
+
+
+def _latest(window: Window, frame_s: float) -> _Readings:
+    """Return the newest readings, as many as tell of a movement: two seconds of them, more where some are lost."""
+    count = (WINDOW + 1) * round(BLOCK / frame_s)
+    return _Readings(window.time[-count:], window.rate[-count:], window.acceleration[-count:])
 
 
 def _unbroken_since(window: Window) -> float:
@@ -121,13 +146,13 @@ def _unbroken_since(window: Window) -> float:
     return float(window.time[pauses[-1] + 1]) if len(pauses) else -math.inf
 
 
-def _rest(window: Window, since: float, frame_s: float) -> Rest | None:
-    """Return the rest of all samples since a moment; None when there was a movement among them."""
-    rows = (window.time >= since) & np.isfinite(window.rate).all(axis=1)
-    rest = find_rest(window.rate[rows], window.acceleration[rows], frame_s)
+def _rest(readings: _Readings, frame_s: float) -> Rest | None:
+    """Return the rest of all readings; None when there was a movement among them, or too few to tell."""
+    known = np.isfinite(readings.rate).all(axis=1)
+    rest = find_rest(readings.rate[known], readings.acceleration[known], frame_s, QUIET)
     block = round(BLOCK / frame_s)
-    if rest is None or rest.first > 0 or rest.last <= int(rows.sum()) - block:
+    if rest is None or rest.first > 0 or rest.last <= int(known.sum()) - block:
         return None
     # ``find_rest`` asks each two seconds to be quiet; here all together have to be.
     spread = float(rest.sigma.max()) * math.sqrt((rest.last - rest.first) / block)
-    return rest if spread < RATE_SPREAD_TABLE else None
+    return rest if spread < QUIET else None

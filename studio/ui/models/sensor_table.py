@@ -182,6 +182,8 @@ class SensorTableModel(QAbstractTableModel):
 
     def flags(self, index: Index) -> Qt.ItemFlag:
         """Names can be edited where the source lets them be."""
+        if not index.isValid():
+            return Qt.ItemFlag.NoItemFlags
         flags = Qt.ItemFlag.ItemIsSelectable | Qt.ItemFlag.ItemIsEnabled
         if self.can_rename and index.column() == Column.NAME:
             flags |= Qt.ItemFlag.ItemIsEditable
@@ -189,6 +191,8 @@ class SensorTableModel(QAbstractTableModel):
 
     def data(self, index: Index, role: int = Qt.ItemDataRole.DisplayRole) -> Any:
         """Return a cell."""
+        if not index.isValid():
+            return None
         row, column = self._rows[index.row()], Column(index.column())
         if role == Qt.ItemDataRole.DisplayRole:
             return self._texts[column](row)[0]

@@ -117,6 +117,8 @@ class SignalValues(QAbstractTableModel):
 
     def data(self, index: Index, role: int = Qt.ItemDataRole.DisplayRole) -> Any:
         """Return a cell."""
+        if not index.isValid():
+            return None
         row, column = self._rows[index.row()], index.column()
         if role in (Qt.ItemDataRole.DisplayRole, Qt.ItemDataRole.AccessibleTextRole):
             return row.name if column == 0 else self._number(row.numbers[column - 1])
@@ -149,4 +151,6 @@ class SignalValues(QAbstractTableModel):
         return tuple(_Line(name, tuple(numbers)) for name, numbers in zip(names, table.tolist(), strict=True))
 
     def _number(self, value: float) -> str:
-        return f"{value:.{DECIMALS[self._signal]}f}" if np.isfinite(value) else "–"
+        decimals = DECIMALS[self._signal]
+        # Adding zero makes nothing of a minus before nothing.
+        return f"{round(value, decimals) + 0.0:.{decimals}f}" if np.isfinite(value) else "–"

@@ -188,7 +188,7 @@ class SensorPanel(QFrame):
 
     def _show_angles(self, degrees: "np.typing.NDArray[np.float64]") -> None:
         for label, value in zip(self.angles, degrees.tolist(), strict=True):
-            words = f"{value:.1f}°".replace("-", "−") if math.isfinite(value) else "–"
+            words = f"{round(value, 1) + 0.0:.1f}°".replace("-", "−") if math.isfinite(value) else "–"
             if words != label.text():
                 label.setText(words)
                 label.setAccessibleDescription(words)

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 import numpy as np
-import pyqtgraph as pg
 from numpy.typing import NDArray
 from PySide6.QtCore import QLineF, QRectF, Qt, Signal
 from PySide6.QtGui import QBrush, QColor, QMouseEvent, QPainter, QPen
@@ -14,7 +13,7 @@ from PySide6.QtWidgets import QWidget
 
 from studio.ui.style_sheet import mixed
 from studio.ui.theme import Theme
-from studio.ui.views.plots.canvas import EndLabel, PlotCanvas, Tick
+from studio.ui.views.plots.canvas import Curve, EndLabel, PlotCanvas, Tick
 from studio.ui.views.plots.polyline import COLUMN, polyline
 
 SECONDS = 10.0  # s shown while capturing
@@ -59,7 +58,7 @@ class AnglePlot(PlotCanvas):
     def __init__(self, theme: Theme, parent: QWidget | None = None) -> None:
         super().__init__(theme, parent)
         self._curves: Sequence[AngleCurve] = ()
-        self._items: list[pg.PlotCurveItem] = []
+        self._items: list[Curve] = []
         self._gaps: list[_Gap] = []
         self._range = (0.0, SECONDS)
         self._origin = 0.0
@@ -123,7 +122,7 @@ class AnglePlot(PlotCanvas):
         for curve, item in zip(self._curves, self._items, strict=True):
             part = self._visible(curve)
             line = polyline(part.time, part.degrees[:, None], np.zeros(len(part.time), np.bool_), self.column_s(COLUMN))
-            item.setData(line.time - self._origin, line.values[:, 0], connect=line.joined)
+            item.draw(line.time - self._origin, line.values[:, 0], line.joined)
             self._gaps += self._gaps_of(part)
             if len(line.time):
                 mark = {"left": "● ", "right": "■ ", "": ""}[curve.side]
@@ -180,7 +179,7 @@ class AnglePlot(PlotCanvas):
         if known != [(curve.name, curve.side) for curve in curves]:
             for item in self._items:
                 self.view.removeItem(item)
-            self._items = [pg.PlotCurveItem(skipFiniteCheck=True, antialias=True) for _ in curves]
+            self._items = [Curve() for _ in curves]
             for row, (curve, item) in enumerate(zip(self._curves, self._items, strict=True)):
                 item.setPen(self._pen(curve, row))
                 self.view.addItem(item, ignoreBounds=True)

@@ -9,7 +9,9 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
+import numpy as np
 import pyqtgraph as pg
+from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QFocusEvent, QFontMetricsF, QPainter, QPen, QResizeEvent, QShowEvent
 from PySide6.QtWidgets import QFrame, QGraphicsView, QSizePolicy, QWidget
@@ -37,6 +39,22 @@ class EndLabel(NamedTuple):
     colour: str
 
 
+class Curve(pg.PlotCurveItem):
+    """A curve that is as large as its view: pyqtgraph looks for least and most of the data four times a picture."""
+
+    def __init__(self) -> None:
+        super().__init__(skipFiniteCheck=True, antialias=True)
+
+    def boundingRect(self) -> QRectF:  # noqa: N802 (Qt's name)
+        """Return what the view shows."""
+        view = self.getViewBox()
+        return QRectF() if view is None else QRectF(view.viewRect())
+
+    def draw(self, x: NDArray[np.float64], y: NDArray[np.float64], joined: NDArray[np.bool_]) -> None:
+        """Draw these points, ``joined`` to the next or not."""
+        self.setData(x, y, connect="all" if joined[:-1].all() else joined)
+
+
 class PlotCanvas(pg.GraphicsView):
     """Curves in a frame of reference; a subclass says which."""
 
@@ -49,7 +67,7 @@ class PlotCanvas(pg.GraphicsView):
         self._y_ticks: Sequence[Tick] = ()
         self._labels: Sequence[EndLabel] = ()
         self._widest_label = ""
-        self._stale = False
+        self._area = QRectF(0, 0, 8, 8)
         self.view = pg.ViewBox(enableMouse=False, enableMenu=False)
         self.view.disableAutoRange()
         self.scene().addItem(self.view)
@@ -83,7 +101,7 @@ class PlotCanvas(pg.GraphicsView):
 
     def area(self) -> QRectF:
         """Return where the lines are, px."""
-        return QRectF(self.view.geometry())
+        return self._area
 
     def x_of(self, at: float) -> float:
         """Return the pixel of a value on the horizontal axis."""
@@ -131,6 +149,10 @@ class PlotCanvas(pg.GraphicsView):
             return
         self._lay_out()
         self.redraw()
+
+    def close(self) -> bool:
+        """Close as every widget: pyqtgraph 0.14 takes its viewport away, which ends the program (PySide6 6.10)."""
+        return QGraphicsView.close(self)
 
     def showEvent(self, event: QShowEvent) -> None:  # noqa: N802 (Qt's name)
         """Draw what came in while nobody looked."""
@@ -212,7 +234,8 @@ class PlotCanvas(pg.GraphicsView):
         bottom = metrics.height() + MARKS + GRID
         size = self.viewport().size()
         width, height = max(size.width() - left - right, 8.0), max(size.height() - top - bottom, 8.0)
-        self.view.setGeometry(QRectF(math.floor(left), math.floor(top), math.floor(width), math.floor(height)))
+        self._area = QRectF(math.floor(left), math.floor(top), math.floor(width), math.floor(height))
+        self.view.setGeometry(self._area)
         self.resetCachedContent()
         self.viewport().update()
 

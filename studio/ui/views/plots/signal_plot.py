@@ -1,7 +1,6 @@
 """The last seconds of one sensor: gyroscope, accelerometer or orientation, with what was lost and clipped."""
 
 import numpy as np
-import pyqtgraph as pg
 from numpy.typing import NDArray
 from PySide6.QtCore import QLineF, QPointF, Qt
 from PySide6.QtGui import QColor, QGuiApplication, QKeyEvent, QKeySequence, QPainter, QPen, QPolygonF
@@ -10,7 +9,7 @@ from PySide6.QtWidgets import QWidget
 from studio.capture.live_buffer import Window
 from studio.ui.models.signal_values import Signal, SignalValues, values_of
 from studio.ui.theme import GRID, Theme
-from studio.ui.views.plots.canvas import MARKS, EndLabel, PlotCanvas, Tick
+from studio.ui.views.plots.canvas import MARKS, Curve, EndLabel, PlotCanvas, Tick
 from studio.ui.views.plots.colours import axis_colours
 from studio.ui.views.plots.polyline import COLUMN, polyline
 
@@ -41,7 +40,7 @@ class SignalPlot(PlotCanvas):
         self._span = 0.0
         self._lost: NDArray[np.float64] = np.empty(0)
         self._clipped: NDArray[np.float64] = np.empty(0)
-        self._curves = [pg.PlotCurveItem(skipFiniteCheck=True, antialias=True) for _ in range(3)]
+        self._curves = [Curve() for _ in range(3)]
         for curve in reversed(self._curves):
             self.view.addItem(curve, ignoreBounds=True)
         self.set_signal(Signal.TURNING)
@@ -141,7 +140,7 @@ class SignalPlot(PlotCanvas):
         for curve, (points, heights, joined) in zip(
             self._curves, self._lines(window.time, values, breaks), strict=True
         ):
-            curve.setData(points - self._now, heights, connect=joined)
+            curve.draw(points - self._now, heights, joined)
         self._label(known[-1])
         self._say(window)
         self.viewport().update()
@@ -167,7 +166,7 @@ class SignalPlot(PlotCanvas):
     def _clear(self) -> None:
         self._lost = self._clipped = np.empty(0)
         for curve in self._curves:
-            curve.setData(np.empty(0), np.empty(0))
+            curve.clear()
         self.set_labels((), self.tr("Nothing in the last {n:.0f} s").format(n=SECONDS))
         self.viewport().update()
 
