@@ -95,21 +95,7 @@ class Toast(QFrame):
         """Take the lower left corner of the parent, or the upper one when the record button is there."""
         room = self._host.rect().adjusted(GAP_PAGE, GAP_PAGE, -GAP_PAGE, -GAP_PAGE)
         most = min(round(TOAST_WIDTH * max(self._theme.text_scale, 1.0)), room.width())
-        self._text.setWordWrap(False)
-        self._box.setDirection(QBoxLayout.Direction.LeftToRight)
-        if self._box.totalSizeHint().width() > most:
-            self._box.setDirection(QBoxLayout.Direction.TopToBottom)
-        if self._box.totalSizeHint().width() > most:
-            self._text.setWordWrap(True)
-        width = min(self._box.totalSizeHint().width(), most)
-        if self._text.wordWrap():
-            width = most
-        height = (
-            self._box.totalHeightForWidth(width)
-            if self._box.hasHeightForWidth()
-            else self._box.totalSizeHint().height()
-        )
-        size = QSize(width, height)
+        size = self._size_within(most)
         lower = QRect(QPoint(room.left(), room.bottom() - size.height()), size)
         upper = QRect(room.topLeft(), size)
         self.setGeometry(upper if self._covers(lower) else lower)
@@ -125,6 +111,25 @@ class Toast(QFrame):
         colour = getattr(self._theme.tokens, self._tone)
         self._mark.setPixmap(pixmap(_SHAPES[self._tone], colour, _icon_size(self._theme)))
         self.place()
+
+    def _size_within(self, most: int) -> QSize:
+        """Lay words and actions side by side, below each other, or with broken lines, and return the size."""
+        margins = self._box.contentsMargins()
+        around = margins.left() + margins.right() + 2 * self.frameWidth()
+        words = self._mark.sizeHint().width() + GAP + self._text.fontMetrics().horizontalAdvance(self._text.text()) + 1
+        actions = self._actions.sizeHint()
+        beside = words + GAP_WIDE + actions.width() if self._buttons else words
+        is_beside = beside + around <= most
+        wide = (beside if is_beside else max(words, actions.width())) + around
+        self._box.setDirection(QBoxLayout.Direction.LeftToRight if is_beside else QBoxLayout.Direction.TopToBottom)
+        self._text.setWordWrap(wide > most)
+        width = min(wide, most)
+        line = width - around - self._mark.sizeHint().width() - GAP
+        height = self._text.heightForWidth(line) if wide > most else self._text.fontMetrics().height()
+        height = max(height, self._mark.sizeHint().height())
+        if self._buttons:
+            height = max(height, actions.height()) if is_beside else height + GAP_WIDE + actions.height()
+        return QSize(width, height + margins.top() + margins.bottom() + 2 * self.frameWidth())
 
     def _covers(self, area: QRect) -> bool:
         for widget in self._clear_of:
@@ -257,6 +262,7 @@ def _button(action: Action, parent: QFrame, clicked: object) -> QPushButton:
     button.setProperty("action", action.id)
     button.setAccessibleName(action.label)
     button.clicked.connect(clicked)
+    button.ensurePolished()  # or its size is asked for before the style sheet has its say
     return button
 
 
