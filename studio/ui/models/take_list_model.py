@@ -6,12 +6,24 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtCore import QAbstractListModel, QModelIndex, QObject, QPersistentModelIndex, Qt, Signal
+from PySide6.QtCore import (
+    QAbstractListModel,
+    QDate,
+    QDateTime,
+    QLocale,
+    QModelIndex,
+    QObject,
+    QPersistentModelIndex,
+    Qt,
+    QTime,
+    Signal,
+)
 
 from studio.storage.take_summary import TakeSummary, age_order
 
 SUMMARY = Qt.ItemDataRole.UserRole
 """Role of the ``TakeSummary`` itself."""
+THIS_YEAR, ANY_YEAR = "d MMM HH:mm", "d MMM yyyy HH:mm"
 LONGEST_NAME = 64  # characters, as where takes are named
 
 Index = QModelIndex | QPersistentModelIndex
@@ -133,20 +145,20 @@ class TakeListModel(QAbstractListModel):
         if math.isnan(summary.lost):
             return ""
         percent = 100.0 * summary.lost
-        if percent == 0.0:
-            return self.tr("nothing lost")
-        if percent < 0.1:
+        if 0.0 < percent < 0.1:
             return self.tr("under 0.1 % lost")
-        return self.tr("{n:.1f} % lost").format(n=percent)
+        return self.tr("{n} % lost").format(n=f"{percent:.1f}" if percent else "0")
 
     def when(self, summary: TakeSummary) -> str:
-        """Return day and time on the clock of this computer; the session when the recording does not tell."""
+        """Return day and time on this computer's clock; the session when the recording does not tell."""
         try:
             moment = datetime.fromisoformat(summary.started)
             local = moment.astimezone()
         except (ValueError, OverflowError):
             return summary.session
-        return local.strftime("%Y-%m-%d %H:%M")
+        known = QDateTime(QDate(*local.timetuple()[:3]), QTime(local.hour, local.minute))
+        year = QDate.currentDate().year()
+        return QLocale().toString(known, THIS_YEAR if known.date().year() == year else ANY_YEAR)
 
     def _refilter(self, words: str, starred: bool) -> None:
         if (words, starred) == (self._words, self._starred):

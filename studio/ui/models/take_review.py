@@ -106,34 +106,58 @@ def value_at(review: TakeReview, name: str, time: float) -> float:
 
 
 def envelope(time: Array, values: Array, edges: Array) -> tuple[Array, Array]:
-    """Return the least and the most value in each column between ``edges``, (k + 1,), s; NaN where there is none."""
-    at = np.searchsorted(time, edges)
-    # A column narrower than a frame shows the frame before it.
-    first = np.minimum(at[:-1], np.maximum(at[1:] - 1, 0))
+    """Return the least and the most value in each column between ``edges``, (k + 1,), s; NaN where there is none.
+
+    Each column reaches to the values of the one before, so that a steep line is drawn without gaps.
+    """
+    columns = len(edges) - 1
     if not len(time):
-        return np.full(len(first), np.nan), np.full(len(first), np.nan)
-    first = np.minimum(first, len(time) - 1)
+        return np.full(columns, np.nan), np.full(columns, np.nan)
+    first = _first_rows(time, edges)
     lower = np.where(np.isnan(values), np.inf, values)
     upper = np.where(np.isnan(values), -np.inf, values)
     least, most = np.minimum.reduceat(lower, first), np.maximum.reduceat(upper, first)
+    before_least, before_most = least[:-1].copy(), most[:-1].copy()
+    joined = np.isfinite(before_least) & np.isfinite(least[1:])
+    least[1:] = np.where(joined & (least[1:] > before_most), before_most, least[1:])
+    most[1:] = np.where(joined & (most[1:] < before_least), before_least, most[1:])
     return np.where(np.isinf(least), np.nan, least), np.where(np.isinf(most), np.nan, most)
 
 
-def lost_stretches(review: TakeReview, name: str, join_s: float) -> list[Stretch]:
-    """Return where samples behind an angle are missing; stretches less than ``join_s`` s apart are one."""
+def lost_share(review: TakeReview, name: str, edges: Array) -> Array:
+    """Return which share of the frames in each column stands in for samples that are missing, 0…1."""
+    time = review.motion.time
+    if not len(time):
+        return np.zeros(len(edges) - 1)
+    first = _first_rows(time, edges)
+    missing = np.add.reduceat(_missing(review, name).astype(np.float64), first)
+    counts = np.maximum(np.diff(np.append(first, max(len(time), first[-1] + 1))), 1)
+    return np.asarray(missing / counts)
+
+
+def gaps(review: TakeReview, name: str, least_s: float) -> list[Stretch]:
+    """Return where samples behind an angle are missing for ``least_s`` s or longer."""
+    motion = review.motion
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], _missing(review, name), [False]]).astype(np.int8)))
+    half = motion.frame_s / 2
+    starts, ends = motion.time[edges[::2]] - half, motion.time[edges[1::2] - 1] + half
+    return [Stretch(float(a), float(b)) for a, b in zip(starts, ends, strict=True) if b - a >= least_s - 1e-9]
+
+
+def _first_rows(time: Array, edges: Array) -> NDArray[np.intp]:
+    """Return the first row of each column; a column narrower than a frame shows the frame before it."""
+    at = np.searchsorted(time, edges)
+    empty = at[:-1] == at[1:]
+    return np.clip(np.where(empty, at[:-1] - 1, at[:-1]), 0, len(time) - 1)
+
+
+def _missing(review: TakeReview, name: str) -> NDArray[np.bool_]:
     motion = review.motion
     missing = np.zeros(len(motion), np.bool_)
     for place in places_of(name):
         if place in motion.lost:
             missing |= motion.lost[place] | ~motion.measured[place]
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], missing, [False]]).astype(np.int8)))
-    if not len(edges):
-        return []
-    half = motion.frame_s / 2
-    starts, ends = motion.time[edges[::2]] - half, motion.time[edges[1::2] - 1] + half
-    apart = np.flatnonzero(starts[1:] - ends[:-1] > join_s)
-    firsts, lasts = np.concatenate([[0], apart + 1]), np.concatenate([apart, [len(starts) - 1]])
-    return [Stretch(float(starts[i]), float(ends[k])) for i, k in zip(firsts, lasts, strict=True)]
+    return missing
 
 
 def places_of(name: str) -> tuple[Place, ...]:

@@ -23,6 +23,7 @@ from studio.ui.views.take_facts import facts_of
 
 NOTE_LINES = 3
 NO_ANGLE = ""
+FOUR_BESIDE = 1.3  # of the text scale up to which four numbers have room on one line
 
 
 class MeasureRow(QWidget):
@@ -42,25 +43,34 @@ class MeasureRow(QWidget):
         self._note.setProperty("role", "caption")
         self._note.setWordWrap(True)
         self._figures = QWidget(self)
-        grid = QGridLayout(self._figures)
-        grid.setContentsMargins(GRID, 0, 0, 0)
-        grid.setHorizontalSpacing(GAP)
-        grid.setVerticalSpacing(0)
+        self._grid = QGridLayout(self._figures)
+        self._grid.setContentsMargins(GRID, 0, 0, 0)
+        self._grid.setHorizontalSpacing(GAP)
+        self._grid.setVerticalSpacing(0)
         titles = (self.tr("now"), self.tr("least"), self.tr("most"), self.tr("range"))
-        for column, (title, number_label) in enumerate(zip(titles, self._numbers, strict=True)):
-            caption = QLabel(title, self._figures)
-            caption.setProperty("role", "caption")
+        self._titles = [QLabel(title, self._figures) for title in titles]
+        for title, number_label in zip(self._titles, self._numbers, strict=True):
+            title.setProperty("role", "caption")
+            title.setAlignment(Qt.AlignmentFlag.AlignRight)
             number_label.setProperty("role", "strong")
-            for row, label in enumerate((number_label, caption)):
-                label.setAlignment(Qt.AlignmentFlag.AlignRight)
-                grid.addWidget(label, row, column)
-            grid.setColumnStretch(column, 1)
+            number_label.setAlignment(Qt.AlignmentFlag.AlignRight)
+        self.spread(wide=True)
         page = QVBoxLayout(self)
         page.setContentsMargins(0, 0, 0, 0)
         page.setSpacing(GRID)
         page.addWidget(self.choice)
         page.addWidget(self._figures)
         page.addWidget(self._note)
+
+    def spread(self, *, wide: bool) -> None:
+        """Put the four numbers beside each other, or two by two where text is large."""
+        columns = 4 if wide else 2
+        for at, (title, number) in enumerate(zip(self._titles, self._numbers, strict=True)):
+            row, column = divmod(at, columns)
+            self._grid.addWidget(number, 2 * row, column)
+            self._grid.addWidget(title, 2 * row + 1, column)
+        for column in range(4):
+            self._grid.setColumnStretch(column, int(column < columns))
 
     @property
     def name(self) -> str:
@@ -168,6 +178,8 @@ class MeasuresPanel(QFrame):
     def restyle(self) -> None:
         """Take over text sizes."""
         self.ensurePolished()
+        for row in self.rows:
+            row.spread(wide=self._theme.text_scale <= FOUR_BESIDE)
         self.note.setFixedHeight(NOTE_LINES * self.note.fontMetrics().lineSpacing() + 2 * GAP + 4)
 
     def _build(self) -> None:
@@ -226,8 +238,9 @@ class MeasuresPanel(QFrame):
 def _label(words: str, role: str, parent: QWidget) -> QLabel:
     label = QLabel(words, parent)
     label.setProperty("role", role)
+    label.setWordWrap(True)
     return label
 
 
 def _degrees(value: float) -> str:
-    return "–" if math.isnan(value) else f"{value:.1f}°".replace("-", "−")
+    return "–" if math.isnan(value) else f"{value + 0.0:.1f}°".replace("-", "−")

@@ -6,7 +6,7 @@ from pathlib import Path
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QStackedWidget, QVBoxLayout, QWidget
 
-from studio.core.errors import StudioError
+from studio.core.errors import AlignmentError, StudioError
 from studio.ui.models.live_angles import MOST_SHOWN
 from studio.ui.models.playhead import LONG_STEP, Playhead, clock
 from studio.ui.models.pose_source import PoseSource
@@ -95,12 +95,12 @@ class ReviewPage(QWidget):
         words = self.tr("Reading the take…") if stage == "read" else self.tr("Computing the motion…")
         self.state.show_progress(words, share)
 
-    def show_refusal(self, folder: Path, error: StudioError, *, again: bool = True) -> None:
-        """A take cannot be shown; ``again``: computing it once more may help."""
+    def show_refusal(self, folder: Path, error: StudioError) -> None:
+        """A take cannot be shown; where the setup is the reason, it may have changed since."""
         self._forget()
         self._open = folder
         self.takes.choose(folder)
-        self.state.show_refusal(sentences(error), self.tr("Compute again") if again else "")
+        self.state.show_refusal(sentences(error), self.tr("Try again") if isinstance(error, AlignmentError) else "")
 
     def show_take(self, review: TakeReview, source: PoseSource, chosen: Sequence[str] = ()) -> None:
         """Show a take; ``chosen`` are the angles somebody chose before."""

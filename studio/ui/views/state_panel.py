@@ -1,7 +1,7 @@
 """What stands where a take would be: nothing chosen, being computed, or why it cannot be shown."""
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QFrame, QLabel, QProgressBar, QPushButton, QScrollArea, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QProgressBar, QPushButton, QScrollArea, QVBoxLayout, QWidget
 
 from studio.ui.theme import GAP, GAP_PAGE, GAP_WIDE, Theme
 from studio.ui.views.announcement import announce
@@ -74,8 +74,12 @@ class StatePanel(QScrollArea):
         page = QWidget(self)
         middle = QVBoxLayout(page)
         middle.setContentsMargins(0, 0, 0, 0)
+        across = QHBoxLayout()
+        across.addStretch(1)
+        across.addWidget(self._column, WIDTH)
+        across.addStretch(1)
         middle.addStretch(2)
-        middle.addWidget(self._column, 0, Qt.AlignmentFlag.AlignHCenter)
+        middle.addLayout(across)
         middle.addStretch(3)
         self.setWidget(page)
         self.button.setProperty("kind", "primary")

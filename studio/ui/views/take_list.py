@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from PySide6.QtCore import QItemSelectionModel, QModelIndex, Qt, Signal
+from PySide6.QtCore import QItemSelectionModel, QModelIndex, QSize, Qt, Signal
 from PySide6.QtWidgets import (
     QAbstractItemView,
     QFrame,
@@ -17,11 +17,13 @@ from PySide6.QtWidgets import (
 )
 
 from studio.storage.take_summary import TakeSummary
-from studio.ui.icons import SIZE, icon
+from studio.ui.icons import icon
 from studio.ui.models.take_list_model import SUMMARY, TakeListModel
 from studio.ui.theme import GAP, GAP_WIDE, GRID, Theme
 from studio.ui.views.flow import FlowLayout
 from studio.ui.views.take_row import TakeRow
+
+STAR = 16  # px at 100 % text
 
 
 class TakeList(QFrame):
@@ -105,9 +107,9 @@ class TakeList(QFrame):
         """Take over colours and text sizes."""
         self._row.restyle()
         tint = self._theme.tokens.muted
-        size = round(SIZE * max(self._theme.text_scale, 1.0))
-        self._magnifier.setIcon(icon("search", tint, size))
-        self.starred.setIcon(icon("star", tint))
+        size = round(STAR * self._theme.text_scale)
+        self.starred.setIcon(icon("star", tint, size))
+        self.starred.setIconSize(QSize(size, size))
         self.view.doItemsLayout()
 
     def _build(self) -> None:
@@ -118,7 +120,6 @@ class TakeList(QFrame):
         self.search.setPlaceholderText(self.tr("Name, person or date"))
         self.search.setAccessibleName(self.tr("Search takes by name, person or date"))
         self.search.setClearButtonEnabled(True)
-        self._magnifier = self.search.addAction(icon("search", self._theme.tokens.muted), _LEADING)
         self.starred.setCheckable(True)
         self.starred.setProperty("kind", "quiet")
         self.starred.setAccessibleName(self.tr("Show only takes with a star"))
@@ -243,6 +244,3 @@ class TakeList(QFrame):
     def _on_show_all(self) -> None:
         self.search.clear()
         self.starred.setChecked(False)
-
-
-_LEADING = QLineEdit.ActionPosition.LeadingPosition

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import (
     QBrush,
@@ -21,7 +22,7 @@ from PySide6.QtWidgets import QAbstractSlider, QSizePolicy, QWidget
 
 from studio.core.take import Mark
 from studio.ui.models.playhead import LONG_STEP, Playhead, clock
-from studio.ui.models.take_review import Stretch, TakeReview, envelope, in_words, lost_stretches, side_of
+from studio.ui.models.take_review import Stretch, TakeReview, envelope, gaps, in_words, lost_share, side_of
 from studio.ui.style_sheet import mixed
 from studio.ui.theme import FOCUS, GAP, GRID, RADIUS, Theme
 from studio.ui.wording import POSES
@@ -29,9 +30,11 @@ from studio.ui.wording import POSES
 BAND = 48  # px, height of the envelope
 COLUMN = 2  # px, width of one column of the envelope
 NEAR = 6  # px; a click so near to a mark means the mark
-LEAST_STRETCH = 2.0  # px; a shorter loss is drawn this wide, so that it is seen
+LEAST_STRETCH = 2.0  # px; a shorter gap is drawn this wide, so that it is seen
+GAP_S = 0.1  # s; a longer gap is hatched, what is shorter stands below as a bar
+LOSS_HEIGHT = 10.0  # px of the bar where everything is missing
 STEPS = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 30, 60, 120, 300, 600, 1200, 1800, 3600)  # s between times
-FILLED = 0.45  # of the side's colour in the envelope: the line in front must stand out
+LINE, BELOW = 0.7, 0.2  # of the side's colour in the envelope and below it: the line in front must stand out
 
 
 class Flag(NamedTuple):
@@ -204,40 +207,44 @@ class Timeline(QAbstractSlider):
         review = self._review
         if review is not None:
             if self._angle:
-                self._paint_lost(painter, review)
                 self._paint_envelope(painter, review)
+                self._paint_lost(painter, review)
             self._paint_times(painter)
             self._flags = self._flags_of(review.marks)
             self._paint_flags(painter)
         painter.end()
         return ground
 
+    def _edges(self) -> NDArray[np.float64]:
+        columns = max(int(self.area().width()) // COLUMN, 1)
+        return np.linspace(0.0, self._playhead.duration, columns + 1)
+
     def _paint_envelope(self, painter: QPainter, review: TakeReview) -> None:
-        area = self.area()
-        columns = max(int(area.width()) // COLUMN, 1)
-        edges = np.linspace(0.0, self._playhead.duration, columns + 1)
+        area, edges, tokens = self.area(), self._edges(), self._theme.tokens
         least, most = envelope(review.motion.time, review.degrees[self._angle], edges)
         if np.isnan(least).all():
             return
         low, high = float(np.nanmin(least)), float(np.nanmax(most))
-        scale = (area.height() - 2 * GRID) / max(high - low, 1.0)
-        width = area.width() / columns
-        tokens = self._theme.tokens
-        colour = {"left": tokens.left, "right": tokens.right}.get(side_of(self._angle), tokens.muted)
-        painter.setBrush(QColor(mixed(tokens.panel, colour, FILLED)))
         bottom = area.bottom() - GRID
+        scale = (area.height() - 2 * GRID) / max(high - low, 1.0)
+        width = area.width() / len(least)
+        side = {"left": tokens.left, "right": tokens.right}.get(side_of(self._angle), tokens.text)
+        line, below = QColor(mixed(tokens.panel, side, LINE)), QColor(mixed(tokens.panel, side, BELOW))
         painter.setRenderHint(QPainter.RenderHint.Antialiasing, on=False)
         for column in np.flatnonzero(~np.isnan(least)).tolist():
             top = bottom - (float(most[column]) - low) * scale
             height = max((float(most[column]) - float(least[column])) * scale, COLUMN)
-            painter.drawRect(QRectF(area.left() + column * width, top, width, height))
+            left = area.left() + column * width
+            painter.fillRect(QRectF(left, top, width, area.bottom() - top), below)
+            painter.fillRect(QRectF(left, top, width, height), line)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         self._paint_caption(painter, low, high)
 
     def _paint_caption(self, painter: QPainter, low: float, high: float) -> None:
         area = self.area()
         painter.setFont(self._theme.font("caption"))
-        words = self.tr("{angle}, {low:.0f}° to {high:.0f}°").format(angle=in_words(self._angle), low=low, high=high)
+        low, high = round(low), round(high)  # whole numbers have no negative zero
+        words = self.tr("{angle}, {low}° to {high}°").format(angle=in_words(self._angle), low=low, high=high)
         metrics = QFontMetricsF(painter.font())
         room = QRectF(area.left() + GRID, area.top() + 2, metrics.horizontalAdvance(words) + GAP, metrics.height())
         ground = QColor(self._theme.tokens.panel)
@@ -250,12 +257,18 @@ class Timeline(QAbstractSlider):
         painter.setPen(Qt.PenStyle.NoPen)
 
     def _paint_lost(self, painter: QPainter, review: TakeReview) -> None:
-        area = self.area()
-        join_s = LEAST_STRETCH * self._playhead.duration / area.width()
+        """Paint gaps hatched over the whole height, and below how much is missing in each column."""
+        area, edges = self.area(), self._edges()
         colour = QColor(self._theme.tokens.bad)
+        painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(QBrush(colour, Qt.BrushStyle.BDiagPattern))
-        for stretch in lost_stretches(review, self._angle, join_s):
-            painter.drawRect(self._between(stretch))
+        for gap in gaps(review, self._angle, GAP_S):
+            painter.drawRect(self._between(gap))
+        share = lost_share(review, self._angle, edges)
+        width = area.width() / len(share)
+        for column in np.flatnonzero(share).tolist():
+            height = max(LOSS_HEIGHT * float(share[column]), 2.0)
+            painter.fillRect(QRectF(area.left() + column * width, area.bottom() - height, width, height), colour)
 
     def _between(self, stretch: Stretch) -> QRectF:
         area = self.area()
@@ -294,7 +307,7 @@ class Timeline(QAbstractSlider):
                 words = mark.label or self.tr("Marker {n}").format(n=number)
                 flags.append(Flag(x, to_x, words, tokens.accent, mark.time))
             elif mark.kind == "record":
-                flags.append(Flag(x, to_x, self.tr("Record pressed"), tokens.rec, mark.time))
+                flags.append(Flag(x, to_x, self.tr("Record"), tokens.rec, mark.time))
             else:
                 flags.append(Flag(x, to_x, mark.label or mark.kind, tokens.muted, mark.time))
         return flags
@@ -305,7 +318,7 @@ class Timeline(QAbstractSlider):
         painter.setFont(caption)
         metrics = QFontMetricsF(caption)
         bottom = area.top() - 1
-        nexts = [*(flag.x for flag in self._flags[1:]), area.right() + GAP]
+        nexts = [*(flag.x for flag in self._flags), area.right() + GAP][1:]
         for flag, following in zip(self._flags, nexts, strict=True):
             colour = QColor(flag.colour)
             painter.setPen(Qt.PenStyle.NoPen)
