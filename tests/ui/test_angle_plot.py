@@ -50,6 +50,23 @@ def test_a_whole_take_is_shown_and_no_peak_is_lost(plot):
     assert plot.view.viewRange()[1][1] >= 111.0
 
 
+def test_no_peak_and_no_gap_of_an_hour_is_lost(plot):
+    time = np.arange(0, 3600, 0.01)
+    peaked = 30 + 30 * np.sin(time)
+    peaked[123456], peaked[200000:210000] = 111.0, np.nan
+
+    plot.show_curves([AngleCurve("left knee flexion", "left", time, peaked)])
+    x, y = items(plot)[0].getData()
+    assert len(x) <= plot.width()
+    assert y.max() == 111.0
+    assert not ((x > 2000.5) & (x < 2099.5)).any()
+
+    plot.set_range(1234.0, 1235.0)
+    x, y = items(plot)[0].getData()
+    assert len(x) > 99
+    assert x[y.argmax()] == pytest.approx(1234.56)
+
+
 def test_a_part_can_be_shown(plot):
     plot.show_curves(knees())
 

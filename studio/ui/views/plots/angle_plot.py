@@ -14,7 +14,7 @@ from PySide6.QtWidgets import QWidget
 from studio.ui.style_sheet import mixed
 from studio.ui.theme import Theme
 from studio.ui.views.plots.canvas import Curve, EndLabel, PlotCanvas, Tick
-from studio.ui.views.plots.polyline import COLUMN, polyline
+from studio.ui.views.plots.polyline import COLUMN, Samples, polyline, thinned
 
 SECONDS = 10.0  # s shown while capturing
 AIR = 0.06  # of the range above and below the lines
@@ -25,6 +25,8 @@ LINE_EVERY = 36  # px between horizontal lines, at least
 NUMBER_EVERY = 72  # px between times, at least, at 100 % text
 HATCH = 10  # px between the strokes over a gap
 GAP_OF_NOTE = 3.0  # px; a shorter gap is seen as a break of the line
+LONG = 20_000  # samples; a longer curve is thinned once
+THINNED = 32  # samples in one column of a thinned curve
 DASHES = [6.0, 4.0]  # px; right
 
 Side = Literal["left", "right", ""]
@@ -49,6 +51,15 @@ class _Gap:
     side: Side
 
 
+class _Line(NamedTuple):
+    """A curve made ready to be drawn again and again."""
+
+    whole: Samples
+    thin: Samples
+    column_s: float
+    """s, of a column of ``thin``; infinite when thinning does not pay."""
+
+
 class AnglePlot(PlotCanvas):
     """Named curves, left solid and right dashed, gaps hatched, a cursor that can be dragged."""
 
@@ -58,6 +69,7 @@ class AnglePlot(PlotCanvas):
     def __init__(self, theme: Theme, parent: QWidget | None = None) -> None:
         super().__init__(theme, parent)
         self._curves: Sequence[AngleCurve] = ()
+        self._lines: list[_Line] = []
         self._items: list[Curve] = []
         self._gaps: list[_Gap] = []
         self._range = (0.0, SECONDS)
@@ -116,14 +128,12 @@ class AnglePlot(PlotCanvas):
         """Draw what was shown last."""
         if not self.is_seen():
             return
-        self._gaps = []
-        self._fit()
+        parts = [self._visible(line) for line in self._lines]
+        self._fit(parts)
         last: list[EndLabel] = []
-        for curve, item in zip(self._curves, self._items, strict=True):
-            part = self._visible(curve)
-            line = polyline(part.time, part.degrees[:, None], np.zeros(len(part.time), np.bool_), self.column_s(COLUMN))
+        for curve, item, part in zip(self._curves, self._items, parts, strict=True):
+            line = polyline(part.time, part.values[:, None], part.breaks, self._column_s())
             item.draw(line.time - self._origin, line.values[:, 0], line.joined)
-            self._gaps += self._gaps_of(part)
             if len(line.time):
                 mark = {"left": "● ", "right": "■ ", "": ""}[curve.side]
                 last.append(EndLabel(mark + curve.name, float(line.values[-1, 0]), self._colour(curve)))
@@ -141,15 +151,16 @@ class AnglePlot(PlotCanvas):
         area = self.area()
         patterns = {"left": Qt.BrushStyle.FDiagPattern, "right": Qt.BrushStyle.BDiagPattern}
         painter.setPen(Qt.PenStyle.NoPen)
+        low, high = self._range
         for gap in self._gaps:
-            left, right = self.x_of(gap.from_s - self._origin), self.x_of(gap.to_s - self._origin)
+            left = self.x_of(max(gap.from_s, low) - self._origin)
+            right = self.x_of(min(gap.to_s, high) - self._origin)
             if right - left < GAP_OF_NOTE:
                 continue
             colour = QColor(self._side_colour(gap.side))
             colour.setAlphaF(0.35)
             painter.setBrush(QBrush(colour, patterns.get(gap.side, Qt.BrushStyle.DiagCrossPattern)))
             painter.drawRect(QRectF(left, area.top(), right - left, area.height()))
-        low, high = self._range
         if low <= self._cursor <= high:
             x = self.x_of(self._cursor - self._origin)
             painter.setPen(QPen(QColor(self._theme.tokens.accent), 2))
@@ -176,6 +187,8 @@ class AnglePlot(PlotCanvas):
     def _take(self, curves: Sequence[AngleCurve]) -> None:
         known = [(curve.name, curve.side) for curve in self._curves]
         self._curves = tuple(curves)
+        self._lines = [_line(curve) for curve in curves]
+        self._gaps = [gap for curve in curves for gap in _gaps(curve)]
         if known != [(curve.name, curve.side) for curve in curves]:
             for item in self._items:
                 self.view.removeItem(item)
@@ -187,26 +200,20 @@ class AnglePlot(PlotCanvas):
             self.setAccessibleDescription(self.text())
         self.redraw()
 
-    def _visible(self, curve: AngleCurve) -> AngleCurve:
-        """Return what lies in the range, with one sample more on each side."""
-        first = max(int(np.searchsorted(curve.time, self._range[0])) - 1, 0)
-        last = int(np.searchsorted(curve.time, self._range[1])) + 1
-        return curve._replace(time=curve.time[first:last], degrees=curve.degrees[first:last])
-
-    def _gaps_of(self, curve: AngleCurve) -> list[_Gap]:
-        missing = np.concatenate([[False], np.isnan(curve.degrees), [False]]).astype(np.int8)
-        edges = np.flatnonzero(np.diff(missing))
+    def _column_s(self) -> float:
+        """Return what a column of the chosen range spans; the axis follows later."""
         low, high = self._range
-        gaps = []
-        for first, after in zip(edges[::2], edges[1::2], strict=True):
-            from_s = float(curve.time[max(first - 1, 0)])
-            to_s = float(curve.time[min(after, len(curve.time) - 1)])
-            gaps.append(_Gap(max(from_s, low), min(to_s, high), curve.side))
-        return gaps
+        return (high - low) * COLUMN / max(self.area().width(), 1.0)
 
-    def _fit(self) -> None:
+    def _visible(self, line: _Line) -> Samples:
+        """Return what lies in the range, thinned where that still gives more than the screen has."""
+        low, high = self._range
+        enough = self._column_s() >= 2 * line.column_s
+        return (line.thin if enough else line.whole).between(low, high)
+
+    def _fit(self, parts: Sequence[Samples]) -> None:
         """Set the axes: times as chosen, angles so that all of them fit."""
-        known = [part[np.isfinite(part)] for part in (self._visible(curve).degrees for curve in self._curves)]
+        known = [part.values[np.isfinite(part.values)] for part in parts]
         known = [part for part in known if len(part)]
         low = min((float(part.min()) for part in known), default=0.0)
         high = max((float(part.max()) for part in known), default=0.0)
@@ -264,6 +271,25 @@ def clock(seconds: float, step: float) -> str:
     sign = "-" if seconds < 0 and units else ""
     width = 2 if decimals == 0 else 3 + decimals
     return f"{sign}{minutes}:{rest / 10**decimals:0{width}.{decimals}f}"
+
+
+def _line(curve: AngleCurve) -> _Line:
+    whole = Samples(curve.time, curve.degrees, np.zeros(len(curve.time), np.bool_))
+    if len(curve.time) < LONG:
+        return _Line(whole, whole, math.inf)
+    column_s = THINNED * float(curve.time[-1] - curve.time[0]) / len(curve.time)
+    return _Line(whole, thinned(whole, column_s), column_s)
+
+
+def _gaps(curve: AngleCurve) -> list[_Gap]:
+    missing = np.concatenate([[False], np.isnan(curve.degrees), [False]]).astype(np.int8)
+    edges = np.flatnonzero(np.diff(missing))
+    before = np.maximum(edges[::2] - 1, 0)
+    after = np.minimum(edges[1::2], len(curve.time) - 1)
+    return [
+        _Gap(float(curve.time[first]), float(curve.time[last]), curve.side)
+        for first, last in zip(before, after, strict=True)
+    ]
 
 
 def _step(steps: Sequence[float], least: float) -> float:

@@ -64,3 +64,26 @@ def _envelope(
     moments = np.empty(2 * len(starts))
     moments[0::2], moments[1::2] = time[starts], time[last]
     return Polyline(moments, points, joined)
+
+
+class Samples(NamedTuple):
+    """One line as it came, or as it was thinned once for all."""
+
+    time: NDArray[np.float64]
+    """(n,), s."""
+    values: NDArray[np.float64]
+    """(n,), NaN where there is none."""
+    breaks: NDArray[np.bool_]
+    """(n,), whether the line is broken just before."""
+
+    def between(self, from_s: float, to_s: float) -> "Samples":
+        """Return what lies in a range, with one more on each side."""
+        first = max(int(np.searchsorted(self.time, from_s)) - 1, 0)
+        last = int(np.searchsorted(self.time, to_s)) + 1
+        return Samples(self.time[first:last], self.values[first:last], self.breaks[first:last])
+
+
+def thinned(samples: Samples, column_s: float) -> Samples:
+    """Return least and most of each column, so that a long line need not be read whole for every picture."""
+    line = polyline(samples.time, samples.values[:, None], samples.breaks, column_s)
+    return Samples(line.time, line.values[:, 0], np.concatenate([[False], ~line.joined[:-1]]))
