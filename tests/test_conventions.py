@@ -32,7 +32,8 @@ NOT_OURS = {"build", "dist", "out", "checkenv", "node_modules", "data", "__pycac
 PLACES_OF_ONE_MACHINE = re.compile(r"(?<![\w.])/(wor[k]|roo[t]|tm[p])/|/hom[e]/\w+/|[A-Z]:\\User[s]\\")
 REGISTRY_HOSTS = re.compile(r"(pypi|pythonhosted|npmjs|debian)\.or[g]|artifactor[y]|index-ur[l]", re.IGNORECASE)
 LEFT_FOR_LATER = re.compile(r"\b(TOD[O]|FIXM[E]|XX[X]|HAC[K])\b(?!.*#\d+)")
-ASSERTING = re.compile(r"raises|warns|assert|check|verify|expect|agree|falsify|^waitSignals?$|^waitUntil$")  # pytest-qt raises when they time out
+# pytest-qt raises when a signal or a state that is waited for does not come.
+ASSERTING = re.compile(r"raises|warns|assert|check|verify|expect|agree|falsify|^waitSignals?$|^waitUntil$")
 
 
 def files(suffixes: set[str], under: Path = ROOT) -> Iterator[Path]:
