@@ -85,8 +85,8 @@ def _trunk() -> tuple[Part, ...]:
             Place.CHEST,
             "limb",
             (
-                Ball(s.Neck, (-0.016, -0.030, 0.0), 0.058),
                 *_pair(s.Spine3, (-0.006, 0.080, 0.106), 0.058),
+                Ball(s.Neck, (-0.016, -0.030, 0.0), 0.058),
                 *_pair(s.Spine3, (0.014, 0.035, 0.072), 0.094),
                 *_pair(s.Spine2, (0.010, 0.025, 0.060), 0.084),
             ),
@@ -124,8 +124,8 @@ def _trunk() -> tuple[Part, ...]:
             "joint",
             (
                 Ball(s.Head, (0.080, 0.094, 0.0), 0.008),
-                Ball(s.Head, (0.104, 0.058, 0.0), 0.012),
                 *_pair(s.Head, (0.082, 0.056, 0.011), 0.010),
+                Ball(s.Head, (0.104, 0.058, 0.0), 0.012),
             ),
             lead=0.04,
         ),
@@ -266,6 +266,10 @@ class Body:
             axis=1,
         )
         """(parts, 2), m: half the width of each end of the axis."""
+
+    def whole(self, known: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Return which parts have all their segments, (parts,); ``known`` (23,) says which segments are."""
+        return np.asarray(known[self._segments][self._rows].all(axis=1))
 
     def posed(self, world_from_segment: Array, joints: Array) -> tuple[Array, Array]:
         """Return the centres of the balls, (parts, MOST_BALLS, 3), and both ends of the axes, (parts, 2, 3), m, world.

@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 MIDDLE = 0.5  # of the stature; the height that is looked at
 SWING = 0.18  # s; how long the way to another view takes
-EASE = np.array([2.2, 2.2, 1.2])  # 1/s, along x, y, z; steps come at 2 Hz and must not shake the picture
+EASE = np.array([2.2, 2.2, 0.8])  # 1/s, along x, y, z; steps come at 2 Hz and must not shake the picture
 LONGEST_STEP = 0.1  # s; after a stall the camera does not leap
 FOLLOW_JUMP = 2.0  # m; a body that far away is another moment or another take: nothing to travel along
 STILL = 1e-4  # m, and m/s: a camera that would move less stands

@@ -28,8 +28,7 @@ class FigurePainter:
     def __init__(self, body: Body) -> None:
         self.body = body
         self._leads = np.array([part.lead for part in body.parts])
-        self._edges = Polygons(len(body.parts))
-        self._rims = Polygons(len(body.parts))
+        self._edges, self._rims = Polygons(len(body.parts)), Polygons(len(body.parts))
 
     def project(self, camera: Camera, pose: StagePose) -> Outlines:
         """Return the body of ``pose`` on the picture."""

@@ -63,15 +63,9 @@ class FloorPainter:
         joints: Array,
     ) -> None:
         """Paint soft shadows below the hips, the feet, and what else comes near the floor."""
-        left, right = (
-            joints[foot] + rotation.rotate(world_from_segment[foot], skeleton.foot_points())
-            for foot in (Segment.LeftFoot, Segment.RightFoot)
-        )
-        rows = [joints[Segment.Hips], *_along(left), *_along(right), *joints[list(LOW)]]
-        width = [0.42] + [0.10] * 6 + [0.15] * len(LOW)
-        dark = [0.6, *(_near(x[2]) for x in rows[1:])]
-        spots = np.array(rows) * (1.0, 1.0, 0.0)
-        seen = camera.seen(spots)
+        with np.errstate(invalid="ignore"):
+            spots, width, dark = _shadows(skeleton, world_from_segment, joints)
+            seen = camera.seen(spots)
         above = abs(float(camera.eye[2]))
         blot = shading.shadow
         for (x, y), depth, half_width, amount in zip(
@@ -142,6 +136,17 @@ def _runs(points: Array) -> Sequence[Array]:
     return [run for run in np.split(points, cuts) if len(run) > 1 and np.isfinite(run).all()]
 
 
+def _shadows(skeleton: Skeleton, world_from_segment: Array, joints: Array) -> tuple[Array, list[float], list[float]]:
+    """Return where shadows are, (n, 3), m, world, half their widths in m, and how dark they are, 0…1."""
+    left, right = (
+        joints[foot] + rotation.rotate(world_from_segment[foot], skeleton.foot_points())
+        for foot in (Segment.LeftFoot, Segment.RightFoot)
+    )
+    points = np.array([joints[Segment.Hips], *_along(left), *_along(right), *joints[list(LOW)]])
+    width = [0.42] + [0.10] * 6 + [0.15] * len(LOW)
+    return points * (1.0, 1.0, 0.0), width, [0.6, *(_near(height) for height in points[1:, 2].tolist())]
+
+
 def _along(sole: Array) -> Array:
     """Return three places from heel to ball, (3, 3), m, world."""
     return np.asarray(sole[:1] + np.array([[0.12], [0.55], [1.0]]) * (sole[1:] - sole[:1]))
@@ -149,4 +154,4 @@ def _along(sole: Array) -> Array:
 
 def _near(height: float) -> float:
     """Return how dark the shadow of something at a height in m is, 0…1."""
-    return float(np.clip(1.0 - height / SHADOW_HEIGHT, 0.0, 1.0) ** 2) if math.isfinite(height) else 0.0
+    return min(max(1.0 - height / SHADOW_HEIGHT, 0.0), 1.0) ** 2 if math.isfinite(height) else 0.0

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from studio.core import rotation
 from studio.ui.views.stage.body_parts import Body
 from studio.ui.views.stage.camera import NEAR, Camera
 
@@ -59,13 +60,13 @@ def outlines(body: Body, camera: Camera, world_from_segment: Array, joints: Arra
     joints : (23, 3), m, world
     leads : (parts,), m; how much nearer a part counts where it is as deep as another
     """
-    centres, ends = body.posed(world_from_segment, joints)
+    known = np.isfinite(np.concatenate([world_from_segment, joints], axis=1)).all(axis=1)
+    centres, ends = body.posed(
+        np.where(known[:, None], world_from_segment, rotation.IDENTITY), np.where(known[:, None], joints, 0.0)
+    )
     seen_balls, seen_ends = camera.seen(centres), camera.seen(ends)
-    with np.errstate(invalid="ignore"):
-        drawable: NDArray[np.bool_] = np.asarray(
-            (seen_balls[..., 2] > NEAR).all(axis=1) & np.isfinite(seen_balls).all(axis=(1, 2))
-        )
-    # a harmless place for what is not drawn keeps the arithmetic free of NaN
+    drawable = np.logical_and((seen_balls[..., 2] > NEAR).all(axis=1), body.whole(known))
+    # what is not drawn gets a harmless place: nothing is projected from behind the eye
     seen_balls[~drawable], seen_ends[~drawable] = (0.0, 0.0, 1.0), (0.0, 0.0, 1.0)
     balls, axis = camera.on_picture(seen_balls), camera.on_picture(seen_ends)
     radii = body.radii * (camera.focal / seen_balls[..., 2])

@@ -110,7 +110,8 @@ class Stage(QWidget):
         self._shading = Shading(self._theme)
         self._floor = FloorPainter(self._theme)
         self._letters, self._names = SideLetters(self._theme), SilentNames(self._theme)
-        self._ground = _ground(self._theme)
+        self._ground, self._font = _ground(self._theme), self._theme.font("body")
+        self._metrics = QFontMetricsF(self._font)
         self._dirty = True
         self._frame()
         self.update()
@@ -284,18 +285,19 @@ class Stage(QWidget):
         self._ghost_figure.paint_ghost(painter, self._shading, self._ghost_figure.project(self.camera, ghost))
 
     def _paint_caption(self, painter: QPainter, words: str) -> None:
-        font = self._theme.font("body")
+        if not words:
+            return
         room = QRectF(self.rect()).adjusted(GAP_WIDE, 0, -GAP_WIDE, -GAP_WIDE)
-        painter.setFont(font)
+        painter.setFont(self._font)
         painter.setPen(QColor(self._theme.tokens.muted))
-        said = QFontMetricsF(font).elidedText(words, Qt.TextElideMode.ElideRight, room.width())
+        said = self._metrics.elidedText(words, Qt.TextElideMode.ElideRight, room.width())
         painter.drawText(room, Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignBottom, said)
 
     def _below(self) -> float:
         """Return the height that the caption takes, px."""
         if self._pose is None or not self._pose.caption:
             return 0.0
-        return QFontMetricsF(self._theme.font("body")).height() + GAP
+        return self._metrics.height() + GAP
 
     def _frame(self) -> None:
         """Give the camera the room between the list of silent sensors and the caption."""
@@ -306,7 +308,7 @@ class Stage(QWidget):
     def _paint_empty(self, painter: QPainter) -> None:
         aside = max(GAP_WIDE, (self.width() - FORM_WIDTH / 2 * self._theme.text_scale) / 2)
         room = QRectF(self.rect()).adjusted(aside, GAP_WIDE, -aside, -GAP_WIDE)
-        painter.setFont(self._theme.font("body"))
+        painter.setFont(self._font)
         painter.setPen(QColor(self._theme.tokens.muted))
         painter.drawText(room, Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap, self._empty)
 

@@ -5,9 +5,9 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-STEP = 0.05  # m; a point is kept when it is that far from the last one
+STEP = 0.1  # m; a point is kept when it is that far from the last one
 JUMP = 0.5  # m; nobody walks that far from one picture to the next: the path is parted
-KEPT = 1000  # points; 50 m, more than a clinic's corridor
+KEPT = 1000  # points; 100 m, more than a clinic's corridor
 
 
 class WalkedPath:
