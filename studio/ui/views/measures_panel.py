@@ -86,6 +86,7 @@ class MeasureRow(QWidget):
             for name in names:
                 self.choice.addItem(marks[side_of(name)] + in_words(name), name)
             self.choice.setCurrentIndex(max(self.choice.findData(chosen), 0))
+        self.choice.setToolTip(self.choice.currentText())
         self._figures.setVisible(bool(chosen))
         self._note.setVisible(False)
 

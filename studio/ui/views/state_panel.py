@@ -58,6 +58,7 @@ class StatePanel(QScrollArea):
         self._what.setProperty("role", "section")
         self._why.setProperty("role", "muted")
         self._bar.setTextVisible(False)
+        self._bar.setFixedHeight(GAP)
         self._bar.setAccessibleName(self.tr("Progress"))
         self._column = QWidget(self)
         column = QVBoxLayout(self._column)
