@@ -74,13 +74,11 @@ class ExportPage(QWidget):
         """Show the files that were written and checked."""
         self._set_busy(on=False)
         self.result.show_done(files, notes)
-        self._scroll.ensureWidgetVisible(self.result)
 
     def show_refusal(self, error: StudioError) -> None:
         """Show why nothing was written."""
         self._set_busy(on=False)
         self.result.show_refusal(error)
-        self._scroll.ensureWidgetVisible(self.result)
 
     def refresh(self) -> None:
         """Show the choice as it stands."""
@@ -103,7 +101,8 @@ class ExportPage(QWidget):
         """Take over colours and text sizes."""
         scale = self._theme.text_scale
         self.takes.setFixedWidth(round(TAKES_WIDTH * min(max(scale, 1.0), WIDEST_TEXT)))
-        self._form.setMaximumWidth(round(FORM_WIDTH * max(scale, 1.0)))
+        for part in (self._form, self.result):
+            part.setMaximumWidth(round(FORM_WIDTH * max(scale, 1.0)))
         tallest = max(card.lines_height() for card in self.cards.values())
         for card in self.cards.values():
             card.setMinimumHeight(tallest)
@@ -114,10 +113,10 @@ class ExportPage(QWidget):
     def _formats(self) -> dict[str, tuple[str, str]]:
         """Return title and text of each card."""
         words = {
-            "blender": (self.tr("Blender (m)"), self.tr("Motion as BVH in metres; also three.js and Unity tools.")),
+            "blender": (self.tr("Blender (m)"), self.tr("Motion as BVH in metres, for Blender and three.js.")),
             "motionbuilder": (
                 self.tr("MotionBuilder / iClone (cm)"),
-                self.tr("Motion as BVH in centimetres; also Maya and Unreal."),
+                self.tr("Motion as BVH in centimetres."),
             ),
             "joints": (self.tr("Joint angles (CSV)"), self.tr("One row a frame, one column an angle, in degrees.")),
             "orientations": (
@@ -143,22 +142,22 @@ class ExportPage(QWidget):
         column.addWidget(self._section(self.tr("Where to")))
         column.addWidget(self._build_target())
         column.addWidget(self._warning)
-        column.addWidget(self.result)
         column.addStretch(1)
         inside = QWidget(self)
         across = QHBoxLayout(inside)
         across.setContentsMargins(0, 0, GAP, 0)
         across.addWidget(self._form, FORM_WIDTH)
         across.addStretch(1)
-        self._scroll = QScrollArea(self)
-        self._scroll.setWidgetResizable(True)
-        self._scroll.setFrameShape(QFrame.Shape.NoFrame)
-        self._scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self._scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self._scroll.setWidget(inside)
+        area = QScrollArea(self)
+        area.setWidgetResizable(True)
+        area.setFrameShape(QFrame.Shape.NoFrame)
+        area.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        area.setWidget(inside)
         right = QVBoxLayout()
         right.setSpacing(GAP_WIDE)
-        right.addWidget(self._scroll, 1)
+        right.addWidget(area, 1)
+        right.addWidget(self.result)
         right.addWidget(self._build_foot())
         page = QHBoxLayout(self)
         page.setContentsMargins(GAP_WIDE, GAP_WIDE, GAP_WIDE, GAP_WIDE)

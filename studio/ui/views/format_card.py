@@ -5,7 +5,7 @@ from PySide6.QtWidgets import QLabel, QPushButton, QSizePolicy, QVBoxLayout, QWi
 
 from studio.ui.theme import GAP, GAP_WIDE, GRID, Theme
 
-WIDTH = 208  # px at 100 % text
+WIDTH = 232  # px at 100 % text
 
 
 class FormatCard(QPushButton):
@@ -55,5 +55,5 @@ class FormatCard(QPushButton):
         """Return the same."""
         return self.sizeHint()
 
-    def _show_chosen(self, on: bool) -> None:  # noqa: FBT001 (a slot)
+    def _show_chosen(self, on: bool) -> None:
         self._title.setText(f"✔ {self._words}" if on else self._words)
