@@ -239,7 +239,7 @@ def _align_limb(
     sensor_from_segment: NDArray[np.float64] | None = None
     source: HeadingSource = "unknown"
     sigma = math.pi
-    if "bow" in others:
+    if "bow" in others and pose != "sit":  # from sitting to the bow, thighs and shanks tilt the other way
         sensor_from_segment, sigma = from_bow(hold.up(), others["bow"].up(), up_in_segment, place in _LIFTED)
         source = "bow"
     if sensor_from_segment is None:

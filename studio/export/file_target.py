@@ -21,6 +21,8 @@ def write_file(path: Path, blocks: Iterable[bytes], read_back: ReadBack) -> None
     ReadBackDiffers
         What was written is not what was meant; nothing has changed.
     """
+    if _is_in_a_take(path):
+        raise CannotWrite(str(path))
     # In the same folder, because a rename is atomic only within one file system. Always the same name, so
     # that what a killed export left is overwritten by the next.
     part = path.with_name(f".{path.name}.part")
@@ -36,23 +38,24 @@ def write_file(path: Path, blocks: Iterable[bytes], read_back: ReadBack) -> None
             part.unlink(missing_ok=True)
 
 
+def _is_in_a_take(path: Path) -> bool:
+    """Return whether ``path`` lies in the folder of a take: what the radio said is never written over."""
+    folders = path.absolute().parents
+    return any((folder / name).exists() for folder in folders for name in ("take.mcap", "take.part.mcap"))
+
+
 def _write(part: Path, blocks: Iterable[bytes], path: Path) -> None:
     try:
         # Readable by its owner only: what people did with their bodies is theirs.
         descriptor = os.open(part, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | getattr(os, "O_BINARY", 0), 0o600)
-    except OSError as refusal:
-        raise CannotWrite(str(path)) from refusal
-    with os.fdopen(descriptor, "wb") as file:
-        for block in blocks:
-            try:
+        # A full disk may show only when closing.
+        with os.fdopen(descriptor, "wb") as file:
+            for block in blocks:
                 file.write(block)
-            except OSError as refusal:
-                raise CannotWrite(str(path)) from refusal
-        try:
             file.flush()
             os.fsync(file.fileno())
-        except OSError as refusal:
-            raise CannotWrite(str(path)) from refusal
+    except OSError as refusal:
+        raise CannotWrite(str(path)) from refusal
 
 
 def _replace(part: Path, path: Path) -> None:

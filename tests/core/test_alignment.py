@@ -8,7 +8,7 @@ import pytest
 from studio.core import rotation
 from studio.core.alignment import from_bow, stillest_second
 from studio.core.body import PLACES, PRESETS, SEGMENT_OF, Place, reference_pose
-from studio.core.errors import PoseTooShort
+from studio.core.errors import HeadingsUnknown, PoseTooShort
 from studio.core.facing import facing_from_hinges
 from studio.core.sample import SensorInfo
 from studio.core.solver import SolveOptions, solve
@@ -255,3 +255,19 @@ def test_the_procedure_of_these_tests_starts_upright():
     for place in PLACES:
         start = procedure(place, np.array([0.0, 2.0]))
         assert rotation.angle_between(start, reference_pose("n")[SEGMENT_OF[place]]).max() < 1e-12
+
+
+def test_with_sitting_as_the_reference_the_bow_tells_nothing():
+    take, _ = sitting_take((Mark(6.5, "pose", "sit", 9.0), Mark(1.0, "pose", "bow", 4.0)))
+
+    with pytest.raises(HeadingsUnknown):
+        solve(take)
+
+
+def test_a_pose_named_later_replaces_only_the_one_of_its_name():
+    take, _ = worn_take(LOWER)
+
+    motion = solve(take, SolveOptions(poses=(Mark(2.0, "pose", "n", 3.5),))).motion
+
+    assert motion.alignment.from_s == 2.0
+    assert {limb.source for limb in motion.alignment.limbs.values()} == {"bow"}

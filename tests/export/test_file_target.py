@@ -139,3 +139,15 @@ def test_what_a_killed_export_left_goes_with_the_next(tmp_path):
     write_file(path, [b"new"], accept)
 
     assert list(tmp_path.iterdir()) == [path]
+
+
+def test_an_export_never_lands_in_a_take(tmp_path):
+    take = tmp_path / "take-001"
+    (take / "derived").mkdir(parents=True)
+    (take / "take.mcap").write_bytes(b"what the radio said")
+
+    for target in (take / "take.mcap", take / "walk.csv", take / "derived" / "walk.csv"):
+        with pytest.raises(CannotWrite):
+            write_file(target, [b"x"], lambda path: None)
+
+    assert (take / "take.mcap").read_bytes() == b"what the radio said"
