@@ -3,8 +3,9 @@
 import math
 from collections.abc import Iterable
 from datetime import datetime
+from operator import attrgetter
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from PySide6.QtCore import (
     QAbstractListModel,
@@ -29,6 +30,14 @@ LONGEST_NAME = 64  # characters, as where takes are named
 Index = QModelIndex | QPersistentModelIndex
 
 
+class _Entry(NamedTuple):
+    """A take with what it is sorted and found by: both cost more than a row that is painted."""
+
+    summary: TakeSummary
+    age: tuple[float, str]
+    text: str
+
+
 class TakeListModel(QAbstractListModel):
     """What is shown of the library."""
 
@@ -38,7 +47,7 @@ class TakeListModel(QAbstractListModel):
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
-        self._all: dict[Path, TakeSummary] = {}
+        self._all: dict[Path, _Entry] = {}
         self._shown: list[TakeSummary] = []
         self._words = ""
         self._starred = False
@@ -55,27 +64,25 @@ class TakeListModel(QAbstractListModel):
 
     def set_takes(self, summaries: Iterable[TakeSummary]) -> None:
         """Show these takes instead."""
-        self.beginResetModel()
-        self._all = {summary.folder: summary for summary in sorted(summaries, key=age_order, reverse=True)}
-        self._shown = self._filtered()
-        self.endResetModel()
+        self._sort([_entry(summary) for summary in summaries])
 
     def put(self, summary: TakeSummary) -> None:
         """Show a new take, or one as it is now."""
+        entry = _entry(summary)
         if summary.folder not in self._all:
-            self.set_takes([*self._all.values(), summary])
+            self._sort([*self._all.values(), entry])
             return
-        self._all[summary.folder] = summary
+        self._all[summary.folder] = entry
         row = self.row_of(summary.folder)
-        if row is not None and self._matches(summary):
+        if row is not None and self._matches(entry):
             self._shown[row] = summary
             self.dataChanged.emit(self.index(row), self.index(row))
         elif row is not None:
             self.beginRemoveRows(QModelIndex(), row, row)
             del self._shown[row]
             self.endRemoveRows()
-        elif self._matches(summary):
-            self.set_takes(self._all.values())
+        elif self._matches(entry):
+            self._sort(list(self._all.values()))
 
     def set_filter(self, words: str) -> None:
         """Show takes that have all of these words in name, person, session or notes."""
@@ -91,7 +98,8 @@ class TakeListModel(QAbstractListModel):
 
     def summary(self, folder: Path) -> TakeSummary | None:
         """Return a take, shown or not."""
-        return self._all.get(folder)
+        entry = self._all.get(folder)
+        return None if entry is None else entry.summary
 
     def rowCount(self, parent: Index = QModelIndex()) -> int:  # noqa: N802, B008 (Qt's name and default)
         """Return how many takes are shown."""
@@ -169,14 +177,24 @@ class TakeListModel(QAbstractListModel):
         self.endResetModel()
         self.filter_changed.emit()
 
-    def _filtered(self) -> list[TakeSummary]:
-        return [summary for summary in self._all.values() if self._matches(summary)]
+    def _sort(self, entries: list[_Entry]) -> None:
+        self.beginResetModel()
+        self._all = {entry.summary.folder: entry for entry in sorted(entries, key=attrgetter("age"), reverse=True)}
+        self._shown = self._filtered()
+        self.endResetModel()
 
-    def _matches(self, summary: TakeSummary) -> bool:
-        if self._starred and summary.verdict != "star":
+    def _filtered(self) -> list[TakeSummary]:
+        return [entry.summary for entry in self._all.values() if self._matches(entry)]
+
+    def _matches(self, entry: _Entry) -> bool:
+        if self._starred and entry.summary.verdict != "star":
             return False
-        text = f"{summary.name} {summary.person} {summary.session} {summary.notes}".casefold()
-        return all(word in text for word in self._words.split())
+        return all(word in entry.text for word in self._words.split())
+
+
+def _entry(summary: TakeSummary) -> _Entry:
+    text = f"{summary.name} {summary.person} {summary.session} {summary.notes}".casefold()
+    return _Entry(summary, age_order(summary), text)
 
 
 def length(seconds: float) -> str:

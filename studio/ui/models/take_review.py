@@ -141,7 +141,8 @@ def gaps(review: TakeReview, name: str, least_s: float) -> list[Stretch]:
     edges = np.flatnonzero(np.diff(np.concatenate([[False], _missing(review, name), [False]]).astype(np.int8)))
     half = motion.frame_s / 2
     starts, ends = motion.time[edges[::2]] - half, motion.time[edges[1::2] - 1] + half
-    return [Stretch(float(a), float(b)) for a, b in zip(starts, ends, strict=True) if b - a >= least_s - 1e-9]
+    long = ends - starts >= least_s - 1e-9
+    return [Stretch(a, b) for a, b in zip(starts[long].tolist(), ends[long].tolist(), strict=True)]
 
 
 def _first_rows(time: Array, edges: Array) -> NDArray[np.intp]:

@@ -53,10 +53,11 @@ class ChosenTakes(QFrame):
         self.restyle()
 
     def restyle(self) -> None:
-        """Take over colours."""
+        """Take over colours and text sizes."""
+        size = round(CROSS * max(self._theme.text_scale, 1.0))
         for cross in self._crosses:
-            cross.setIcon(icon("close", self._theme.tokens.muted, CROSS))
-            cross.setIconSize(QSize(CROSS, CROSS))
+            cross.setIcon(icon("close", self._theme.tokens.muted, size))
+            cross.setIconSize(QSize(size, size))
 
     def _build(self) -> None:
         self.setProperty("ground", "panel")

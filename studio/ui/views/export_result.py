@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from PySide6.QtCore import Qt, Signal
+from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QFrame, QLabel, QProgressBar, QPushButton, QVBoxLayout, QWidget
 
@@ -78,6 +78,7 @@ class ExportResult(QFrame):
         size = round(SIZE * max(self._theme.text_scale, 1.0))
         for button, name in ((self.show_file, "folder"), (self.copy, "copy")):
             button.setIcon(icon(name, self._theme.tokens.text, size))
+            button.setIconSize(QSize(size, size))
 
     def _build(self) -> None:
         self.setProperty("ground", "raised")

@@ -230,13 +230,19 @@ class Timeline(QAbstractSlider):
         width = area.width() / len(least)
         side = {"left": tokens.left, "right": tokens.right}.get(side_of(self._angle), tokens.text)
         line, below = QColor(mixed(tokens.panel, side, LINE)), QColor(mixed(tokens.panel, side, BELOW))
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing, on=False)
+        x0, foot = area.left(), area.bottom()
+        lines, grounds = [], []
         for column in np.flatnonzero(~np.isnan(least)).tolist():
             top = bottom - (float(most[column]) - low) * scale
             height = max((float(most[column]) - float(least[column])) * scale, COLUMN)
-            left = area.left() + column * width
-            painter.fillRect(QRectF(left, top, width, area.bottom() - top), below)
-            painter.fillRect(QRectF(left, top, width, height), line)
+            left = x0 + column * width
+            grounds.append(QRectF(left, top, width, foot - top))
+            lines.append(QRectF(left, top, width, height))
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing, on=False)
+        for rectangles, colour in ((grounds, below), (lines, line)):
+            painter.setBrush(colour)
+            painter.drawRects(rectangles)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         self._paint_caption(painter, low, high)
 
@@ -265,10 +271,11 @@ class Timeline(QAbstractSlider):
         for gap in gaps(review, self._angle, GAP_S):
             painter.drawRect(self._between(gap))
         share = lost_share(review, self._angle, edges)
-        width = area.width() / len(share)
-        for column in np.flatnonzero(share).tolist():
-            height = max(LOSS_HEIGHT * float(share[column]), 2.0)
-            painter.fillRect(QRectF(area.left() + column * width, area.bottom() - height, width, height), colour)
+        width, x0, foot = area.width() / len(share), area.left(), area.bottom()
+        columns = np.flatnonzero(share).tolist()
+        heights = np.maximum(LOSS_HEIGHT * share, 2.0).tolist()
+        painter.setBrush(colour)
+        painter.drawRects([QRectF(x0 + k * width, foot - heights[k], width, heights[k]) for k in columns])
 
     def _between(self, stretch: Stretch) -> QRectF:
         area = self.area()
