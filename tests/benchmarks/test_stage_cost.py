@@ -68,7 +68,7 @@ def _stages(widget, pose):
     shading, path = widget._shading, widget._path.points  # noqa: SLF001
     return {
         "projection and order": lambda painter: figure.project(camera, pose),
-        "limbs": lambda painter: figure.paint(painter, shading, pose, seen, {}),
+        "limbs": lambda painter: figure.paint(painter, shading, pose, seen),
         "grid": lambda painter: floor.paint_grid(painter, camera),
         "path": lambda painter: floor.paint_path(painter, camera, path),
     }

@@ -251,6 +251,40 @@ def test_every_place_has_its_part_and_both_sides_are_alike():
     ]
 
 
+@pytest.mark.parametrize("pose", ["n", "t"])
+@pytest.mark.parametrize("from_behind", [False, True])
+def test_feet_and_free_hands_have_their_letters_whole(qtbot, from_behind, pose):
+    """A letter is a disc or a square of the side's own colour, which nothing else has: gloves and shoes are mixed."""
+    widget = stage(qtbot, size=(1000, 700))
+    widget.mirrored = from_behind
+    widget.show_pose(standing(pose))
+    widget.view("front")
+
+    assert badges(widget, DARK.left) == pytest.approx(2, abs=0.2)
+    assert badges(widget, DARK.right) == pytest.approx(2, abs=0.2)
+
+
+def test_a_hand_behind_the_body_has_no_letter(qtbot):
+    widget = stage(qtbot, size=(1000, 700))
+    world = standing().world_from_segment.copy()
+    arm = [Segment.LeftArm, Segment.LeftForeArm, Segment.LeftHand]
+    world[arm[0]] = rotation.multiply(rotation.about(1, math.radians(35)), world[arm[0]])
+    world[arm[1:]] = rotation.multiply(rotation.about(0, math.radians(-30)), world[arm[1:]])
+    widget.show_pose(StagePose(world, SKELETON.joint_positions(world, standing().joints[0]), frozenset(PLACES)))
+    widget.view("front")
+
+    assert badges(widget, DARK.left) == pytest.approx(1, abs=0.2)
+    assert badges(widget, DARK.right) == pytest.approx(2, abs=0.2)
+
+
+def badges(widget, token):
+    """How many letters of a colour are seen, by their area: a disc or a square, less the ink of the letter."""
+    size = round(widget._theme.pixels("caption") * 1.5)  # noqa: SLF001
+    whole = size**2 * (math.pi / 4 if token == DARK.left else 1.0)
+    rgb = np.array([int(token[i : i + 2], 16) for i in (1, 3, 5)])
+    return (np.abs(picture(widget) - rgb).max(axis=2) < 4).sum() / (0.75 * whole)
+
+
 @pytest.mark.parametrize("dark", [True, False])
 def test_the_figure_stands_out_from_its_ground(qtbot, dark):
     """Graphics need a contrast of 3: limbs in the dark theme, their rims in the light one, where limbs are bright."""

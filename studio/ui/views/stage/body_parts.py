@@ -67,7 +67,7 @@ def _trunk() -> tuple[Part, ...]:
             "limb",
             (
                 *_pair(s.Hips, (0.0, 0.085, 0.058), 0.076),
-                *_pair(s.Hips, (-0.012, -0.012, 0.074), 0.086),
+                *_pair(s.Hips, (-0.014, -0.012, 0.070), 0.085),
             ),
             2,
             lead=-0.04,
@@ -178,8 +178,8 @@ def _side(side: Literal["left", "right"]) -> tuple[Part, ...]:
             "thigh",
             place("thigh"),
             (
-                Ball(upper, (0, -0.01, 0.004 * out), 0.084),
-                Ball(upper, (0.008, 0, 0.006 * out), 0.080, lower, 0.35),
+                Ball(upper, (0, -0.01, -0.002 * out), 0.080),
+                Ball(upper, (0.008, 0, -0.002 * out), 0.073, lower, 0.35),
                 Ball(lower, (0, 0, 0), 0.054),
             ),
         ),

@@ -1,13 +1,12 @@
 """The body: parts painted from the farthest to the nearest; known ones shaded, unknown hatched, silent hollow."""
 
 import math
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QImage, QPainter, QPixmap, QPolygonF, QTransform
+from PySide6.QtGui import QImage, QPainter, QPolygonF, QTransform
 from shiboken6 import VoidPtr
 
 from studio.ui.models.stage_pose import StagePose
@@ -34,23 +33,17 @@ class FigurePainter:
         """Return the body of ``pose`` on the picture."""
         return outlines(self.body, camera, pose.world_from_segment, pose.joints, self._leads)
 
-    def paint(
-        self,
-        painter: QPainter,
-        shading: Shading,
-        pose: StagePose,
-        seen: Outlines,
-        badges: Mapping[int, tuple[QPointF, QPixmap]],
-    ) -> None:
-        """Paint the figure; each of ``badges`` belongs to a part and is hidden by what hides that."""
+    def paint(self, painter: QPainter, shading: Shading, pose: StagePose, seen: Outlines) -> None:
+        """Paint the figure."""
         painter.setPen(Qt.PenStyle.NoPen)
         self._edges.fill(seen.edges)
         self._rims.fill(grown(seen.edges, RIM * seen.hairline))
+        shades = np.column_stack([seen.light_across, seen.light_towards, seen.across, seen.shade_middle]).tolist()
         for row in seen.order:
             part = self.body.parts[row]
             if part.needs:
                 if all(place in pose.measured and place not in pose.silent for place in part.needs):
-                    self._paint_shaded(painter, shading, part, seen, row)
+                    self._paint_shaded(painter, shading, part, shades[row], row)
             elif part.place in pose.silent:
                 self._paint_hollow(painter, shading, row)
             elif part.place not in pose.measured:
@@ -58,9 +51,7 @@ class FigurePainter:
             else:
                 painter.setBrush(shading.rim)
                 painter.drawPolygon(self._rims[row])
-                self._paint_shaded(painter, shading, part, seen, row)
-            if row in badges:
-                painter.drawPixmap(*badges[row])
+                self._paint_shaded(painter, shading, part, shades[row], row)
 
     def paint_ghost(self, painter: QPainter, shading: Shading, seen: Outlines) -> None:
         """Paint only the outline of the whole body, filled so thinly that what is behind is seen."""
@@ -93,9 +84,9 @@ class FigurePainter:
         inner.end()
         painter.drawImage(box.topLeft(), layer)
 
-    def _paint_shaded(self, painter: QPainter, shading: Shading, part: Part, seen: Outlines, row: int) -> None:
-        brush = shading.brush(part.tone, float(seen.light_across[row]), float(seen.light_towards[row]))
-        (ax, ay), (x, y) = seen.across[row].tolist(), seen.shade_middle[row].tolist()
+    def _paint_shaded(self, painter: QPainter, shading: Shading, part: Part, shade: list[float], row: int) -> None:
+        across, towards, ax, ay, x, y = shade
+        brush = shading.brush(part.tone, across, towards)
         painter.setBrush(placed(brush, QTransform(ax, ay, -ay, ax, x, y)))
         painter.drawPolygon(self._edges[row])
 

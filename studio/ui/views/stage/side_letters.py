@@ -7,11 +7,13 @@ import numpy as np
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPixmap
 
+from studio.core.body import Place
 from studio.ui.theme import Theme
 from studio.ui.views.stage.body_parts import Part
-from studio.ui.views.stage.outlines import Outlines
+from studio.ui.views.stage.outlines import EDGE, Outlines
 
 LETTERED = ("hand", "toes")
+ARM = ("upper_arm", "forearm", "hand")
 SMALL_FIGURE = 160.0  # px; of a figure that is less high only the feet get letters
 OF_SMALL, OF_LARGE = 0.06, 0.028  # of the figure's height; a letter is between these, if it can one and a half captions
 LEAST = 16.0  # px
@@ -31,22 +33,19 @@ class SideLetters:
         self._theme = theme
         self._badges: dict[tuple[bool, int, Letters, float], QPixmap] = {}
 
-    def placed(
-        self, parts: Sequence[Part], seen: Outlines, letters: Letters, ratio: float
-    ) -> dict[int, tuple[QPointF, QPixmap]]:
-        """Return the letters and their upper left corners, px, by part; ``ratio`` is the screen's."""
+    def paint(self, painter: QPainter, parts: Sequence[Part], seen: Outlines, letters: Letters) -> None:
+        """Paint the letters of the hands and feet that are not behind the body or the other side's limbs."""
         rows = list(seen.order)
         height = float(np.ptp(seen.edges[rows][..., 1])) if rows else 0.0
         usual = min(max(height * OF_SMALL, LEAST), self._theme.pixels("caption") * 1.5)
         size = round(max(usual, height * OF_LARGE))
-        placed = {}
-        for row in rows:
-            part = parts[row]
-            if part.name not in LETTERED or (part.name == "hand" and height < SMALL_FIGURE):
+        ratio = painter.device().devicePixelRatio()
+        shown = LETTERED if height >= SMALL_FIGURE else LETTERED[1:]
+        for turn, row in enumerate(rows):
+            if parts[row].name not in shown or _is_hidden(parts, seen, row, rows[turn + 1 :]):
                 continue
             corner = _beyond(seen, row, 0.75 * size) - QPointF(size / 2, size / 2)
-            placed[row] = (corner, self._badge(part.tone == "left", size, letters, ratio))
-        return placed
+            painter.drawPixmap(corner, self._badge(parts[row].tone == "left", size, letters, ratio))
 
     def _badge(self, is_left: bool, size: int, letters: Letters, ratio: float) -> QPixmap:
         """Return a letter on its ground; drawn once for each size."""
@@ -84,3 +83,25 @@ def _beyond(seen: Outlines, row: int, distance: float) -> QPointF:
     reach = float(((seen.edges[row] - middle) @ along).max())
     x, y = (middle + along * (reach + distance)).tolist()
     return QPointF(x, y)
+
+
+def _is_hidden(parts: Sequence[Part], seen: Outlines, row: int, nearer: Sequence[int]) -> bool:
+    """Return whether all four ends of a part are behind nearer parts of other limbs."""
+    own = _limb(parts[row].place)
+    others = [other for other in nearer if _limb(parts[other].place) != own]
+    corners = seen.edges[others]
+    ends = seen.edges[row][:: EDGE // 4]
+    near = (corners.min(axis=1) < ends.max(axis=0)).all(axis=1) & (corners.max(axis=1) > ends.min(axis=0)).all(axis=1)
+    corners = corners[near][:, None] - ends[None, :, None]
+    after = np.roll(corners, -1, axis=2)
+    turns = corners[..., 0] * after[..., 1] - corners[..., 1] * after[..., 0]
+    inside = (turns >= 0.0).all(axis=2) | (turns <= 0.0).all(axis=2)
+    return bool(inside.any(axis=0).all())
+
+
+def _limb(place: Place) -> str:
+    """Return one name for all places of an arm, of a leg, and of the trunk."""
+    side, _, name = place.value.partition("_")
+    if not name:
+        return "trunk"
+    return f"{side} {'arm' if name in ARM else 'leg'}"

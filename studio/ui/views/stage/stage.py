@@ -272,9 +272,8 @@ class Stage(QWidget):
         if self._ghost is not None:
             self._paint_ghost(painter, self._ghost)
         parts = self._figure.body.parts
-        letters = Letters(self.tr("L", "left"), self.tr("R", "right"))
-        badges = self._letters.placed(parts, seen, letters, painter.device().devicePixelRatio())
-        self._figure.paint(painter, self._shading, pose, seen, badges)
+        self._figure.paint(painter, self._shading, pose, seen)
+        self._letters.paint(painter, parts, seen, Letters(self.tr("L", "left"), self.tr("R", "right")))
         self._paint_caption(painter, pose.caption)
         if pose.silent:
             room = QRectF(self.rect()).adjusted(GAP_WIDE, GAP_WIDE, -GAP_WIDE, -GAP_WIDE - self._below())
