@@ -123,8 +123,7 @@ class SerialLink:
     def _read(self) -> None:
         """Hand over bytes until closing; the reader's thread, the only one that opens and closes the port."""
         self._greet()
-        last = False
-        while not last:
+        while True:
             last = self._closing.is_set()  # asked before reading: what came until then is still handed over
             try:
                 data = self._port.read(self._port.in_waiting or (0 if last else 1))
@@ -137,6 +136,8 @@ class SerialLink:
             if data:
                 self._tell(self._take, Arrival(time.perf_counter(), data))
                 self._closing.wait(GATHER)
+            elif last:
+                break
         self._port.close()
 
     def _greet(self) -> None:

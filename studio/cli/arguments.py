@@ -120,7 +120,7 @@ def _add_solving(verb: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="NAME=FROM..TO",
-        help="a pose held between two times in s (n, t, bow, sit); may be repeated; replaces the recorded one of that name",
+        help="a pose held between two times in s (n, t, bow, sit); may be repeated; replaces the recorded ones",
     )
 
 

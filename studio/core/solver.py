@@ -34,7 +34,7 @@ class SolveOptions:
     attitude: str = "vqf"
     method: Method = "offline"
     poses: tuple[Mark, ...] = ()
-    """Held poses that replace those of the same name marked in the take."""
+    """Held poses that replace those marked in the take; empty keeps the marked ones."""
     calibrations: Mapping[SensorId, Calibration] | None = None
     """None: those recorded in the take."""
 
@@ -130,8 +130,7 @@ def _calibrations(take: Take, options: SolveOptions) -> Mapping[SensorId, Calibr
 
 
 def _poses(take: Take, options: SolveOptions) -> tuple[Mark, ...]:
-    named = {mark.label for mark in options.poses}
-    return (*options.poses, *(mark for mark in take.poses() if mark.label not in named))
+    return options.poses or take.poses()
 
 
 def _headings(

@@ -262,12 +262,3 @@ def test_with_sitting_as_the_reference_the_bow_tells_nothing():
 
     with pytest.raises(HeadingsUnknown):
         solve(take)
-
-
-def test_a_pose_named_later_replaces_only_the_one_of_its_name():
-    take, _ = worn_take(LOWER)
-
-    motion = solve(take, SolveOptions(poses=(Mark(2.0, "pose", "n", 3.5),))).motion
-
-    assert motion.alignment.from_s == 2.0
-    assert {limb.source for limb in motion.alignment.limbs.values()} == {"bow"}

@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
+from PySide6.QtGui import QFocusEvent
 from PySide6.QtWidgets import (
     QComboBox,
     QFrame,
@@ -113,6 +114,17 @@ class MeasureRow(QWidget):
         self._numbers[0].setText(_degrees(value))
 
 
+class NoteField(QPlainTextEdit):
+    """A few lines, told when they are left."""
+
+    left = Signal()
+
+    def focusOutEvent(self, event: QFocusEvent) -> None:  # noqa: N802 (Qt's name)
+        """Tell."""
+        super().focusOutEvent(event)
+        self.left.emit()
+
+
 class MeasuresPanel(QFrame):
     """Chosen angles, their worth, and the note of a take."""
 
@@ -129,7 +141,7 @@ class MeasuresPanel(QFrame):
         self.rows = [MeasureRow(number + 1, self) for number in range(MOST_SHOWN)]
         self._stretch = QLabel(self)
         self._facts = QLabel(self)
-        self.note = QPlainTextEdit(self)
+        self.note = NoteField(self)
         self.export = QPushButton(self.tr("Export…"), self)
         self._build()
         self.restyle()
@@ -230,6 +242,7 @@ class MeasuresPanel(QFrame):
         self.note.setAccessibleName(self.tr("Note about the take"))
         self.note.setPlaceholderText(self.tr("What should be remembered of this take"))
         self.note.setTabChangesFocus(True)
+        self.note.left.connect(self.keep_note)
         column.addWidget(self.note)
 
     def _on_chosen(self) -> None:

@@ -119,6 +119,10 @@ class ReviewPage(QWidget):
         self._show_angles()
         self._dress_stage()
 
+    def key_actions(self) -> tuple[str, ...]:
+        """Return the keys this page has functions for (see ``ui.keys``)."""
+        return tuple(self._acts)
+
     def act(self, action: str) -> bool:
         """Do what a key asks for; return whether it is done here (see ``ui.keys``)."""
         done = self._acts.get(action)

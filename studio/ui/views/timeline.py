@@ -68,6 +68,7 @@ class Timeline(QAbstractSlider):
         self.setSingleStep(1)
         self.setPageStep(LONG_STEP)
         self.setAccessibleName(self.tr("Time in the take"))
+        self.setEnabled(False)
         playhead.moved.connect(self._on_moved)
         playhead.changed.connect(self._on_changed)
         self._on_changed()
