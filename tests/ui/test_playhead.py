@@ -110,7 +110,7 @@ def test_home_and_end_go_to_the_range_first_and_then_to_the_take(head):
 
 
 def test_it_tells_only_when_it_moved(head):
-    told = []
+    told: list[object] = []
     head.moved.connect(told.append)
     head.seek(2.0)
     head.seek(2.0)

@@ -1,5 +1,7 @@
 """Review: choose a take, see it computed, play it, read its numbers; refusals in sentences."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from PySide6.QtCore import Qt
@@ -53,8 +55,9 @@ def theme():
 @pytest.fixture
 def page(qtbot, theme):
     made = ReviewPage(theme, Playhead(), AnglePlot(theme))
-    made.seen = WatchedStage(theme)
-    made.set_stage(made.seen)
+    seen = WatchedStage(theme)
+    made.seen = seen  # type: ignore[attr-defined]
+    made.set_stage(seen)
     qtbot.addWidget(made)
     made.setStyleSheet(style_sheet(theme))
     made.resize(1184, 720)
@@ -176,7 +179,7 @@ def test_a_long_take_turns_pages_in_the_plot(page):
 
 def test_angles_are_added_changed_and_taken_away(page):
     show(page)
-    told: list[object] = []
+    told: list[Any] = []
     page.chosen_angles_changed.connect(told.append)
     rows = page.measures.rows
     assert [row.isVisible() for row in rows] == [True, True, True, False]
@@ -225,7 +228,7 @@ def test_a_note_is_kept_when_something_else_gets_the_focus(page, qtbot):
 
 
 def test_the_note_of_a_take_is_shown_and_not_told_back(page):
-    told: list[object] = []
+    told: list[Any] = []
     page.note_requested.connect(lambda folder, text: told.append(text))
     show(page, review(summary(1, notes="limps")))
     assert page.measures.note.toPlainText() == "limps"

@@ -59,9 +59,9 @@ def test_the_value_under_the_playhead_is_that_of_the_frame(shown):
 
 @pytest.mark.parametrize("columns", [7, 100, 1500])
 def test_the_envelope_loses_no_extreme_and_has_no_holes(columns):
-    time = np.arange(300) * FRAME_S
-    values = 50 * np.sin(7 * time)
-    least, most = envelope(time, values, np.linspace(0.0, time[-1] + FRAME_S, columns + 1))
+    time = np.arange(300, dtype=np.float64) * FRAME_S
+    values = (50 * np.sin(7 * time)).astype(np.float64)
+    least, most = envelope(time, values, np.linspace(0.0, float(time[-1]) + FRAME_S, columns + 1).astype(np.float64))
 
     assert np.nanmax(most) == values.max()
     assert np.nanmin(least) == values.min()
@@ -71,9 +71,9 @@ def test_the_envelope_loses_no_extreme_and_has_no_holes(columns):
 
 
 def test_the_envelope_is_empty_where_nothing_was_measured():
-    time = np.arange(100) * FRAME_S
-    values = np.where((time > 0.5) & (time < 1.5), np.nan, 1.0)
-    least, _ = envelope(time, values, np.linspace(0.0, 2.0, 9))
+    time = np.arange(100, dtype=np.float64) * FRAME_S
+    values = np.where((time > 0.5) & (time < 1.5), np.nan, 1.0).astype(np.float64)
+    least, _ = envelope(time, values, np.linspace(0.0, 2.0, 9).astype(np.float64))
 
     assert np.isnan(least).tolist() == [False, False, False, True, True, True, False, False]
 
