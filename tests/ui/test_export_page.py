@@ -18,7 +18,7 @@ from tests.ui.reviewed import summary
 
 pytestmark = pytest.mark.qt_log_ignore("propagateSizeHints")
 
-EXPORTS = Path("/home/clinic/exports")
+EXPORTS = Path("/data/exports")
 LONG = "a very long name that somebody typed while the patient was already walking up and down"
 
 
@@ -180,9 +180,9 @@ def test_done_says_that_it_was_checked_and_where_it_is(page, qtbot):
 
 def test_a_refusal_is_a_sentence_and_it_can_be_tried_again(page):
     page.show_progress("write", 0.2)
-    page.show_refusal(CannotWrite("/home/clinic/exports/walk.bvh"))
+    page.show_refusal(CannotWrite("/data/exports/walk.bvh"))
 
-    assert page.result.text().startswith("▲ /home/clinic/exports/walk.bvh cannot be written. It is open in another")
+    assert page.result.text().startswith("▲ /data/exports/walk.bvh cannot be written. It is open in another")
     assert page.start.isEnabled()
     assert not page.result.show_file.isVisible()
 

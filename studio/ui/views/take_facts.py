@@ -74,5 +74,5 @@ def _named(places: tuple[Place, ...], worn: int) -> str:
 
 def _method(review: TakeReview) -> str:
     motion = review.motion
-    words = _tr("Computed with {attitude}, {method}, {rate:.0f} frames a second.")
+    words = _tr("Computed with the filter “{attitude}”, method “{method}”, {rate:.0f} frames a second.")
     return words.format(attitude=motion.attitude, method=motion.method, rate=1 / motion.frame_s)
