@@ -40,7 +40,9 @@ class FloorPainter:
         """Paint lines a metre apart, or more when the eye is far."""
         ends = camera.seen(_grid(camera))
         kept = _clipped(ends)
-        points = camera.on_picture(kept).reshape(-1, 4)
+        points = camera.on_picture(kept)
+        across = points[..., 0]
+        points = points[(across.max(axis=1) > 0.0) & (across.min(axis=1) < camera.size[0])].reshape(-1, 4)
         painter.setPen(self._pen(camera, self._fading_line, self._line, 1.0))
         painter.drawLines([QLineF(*row) for row in points.tolist()])
 

@@ -29,6 +29,10 @@ class Outlines:
 
     edges: Array
     """(parts, EDGE, 2), px."""
+    axis: Array
+    """(parts, 2, 2), px: upper and lower end."""
+    widths: Array
+    """(parts, 2), px: half the width of both ends."""
     middles: Array
     """(parts, 2), px: middle of the axis."""
     across: Array
@@ -71,6 +75,7 @@ def outlines(body: Body, camera: Camera, world_from_segment: Array, joints: Arra
     balls, axis = camera.on_picture(seen_balls), camera.on_picture(seen_ends)
     radii = body.radii * (camera.focal / seen_balls[..., 2])
     scale = camera.focal / seen_ends[..., 2].mean(axis=1)
+    widths = body.end_widths * scale[:, None]
     across, towards, lit = _light(seen_ends, axis, radii.max(axis=1))
     far = ((balls * lit[:, None]).sum(axis=-1) + radii).max(axis=1)
     near = ((balls * lit[:, None]).sum(axis=-1) - radii).min(axis=1)
@@ -78,6 +83,8 @@ def outlines(body: Body, camera: Camera, world_from_segment: Array, joints: Arra
     offset = 0.5 * (far + near) - (middle * lit).sum(axis=-1)
     return Outlines(
         edges=_hulls(balls, radii),
+        axis=axis,
+        widths=widths,
         middles=middle,
         across=lit * (0.5 * (far - near))[:, None],
         shade_middle=middle + lit * offset[:, None],
@@ -87,9 +94,7 @@ def outlines(body: Body, camera: Camera, world_from_segment: Array, joints: Arra
         scale=scale,
         drawable=drawable,
         hairline=camera.hairline,
-        order=_painting_order(
-            _neighbours(balls, radii), axis, seen_ends[..., 2], body.end_widths * scale[:, None], drawable, leads
-        ),
+        order=_painting_order(_neighbours(balls, radii), axis, seen_ends[..., 2], widths, drawable, leads),
     )
 
 
@@ -116,14 +121,14 @@ def _light(seen_ends: Array, axis: Array, radius: Array) -> tuple[Array, Array, 
     along[:, 2] *= -1.0
     on_picture = axis[:, 1] - axis[:, 0]
     length = np.hypot(on_picture[:, 0], on_picture[:, 1])
-    slender = np.clip(length / (2.0 * radius) - 0.25, 0.0, 1.0)[:, None]
+    slender = _share(length / (2.0 * radius) - 0.25)[:, None]
     side = _unit(np.stack([-on_picture[:, 1], on_picture[:, 0]], axis=-1))
     side *= np.where(side @ _LIGHT_ON_PICTURE < 0.0, -1.0, 1.0)[:, None]
     lit = _unit(slender * side + (1.0 - slender) * _LIGHT_ON_PICTURE)
     unit = _unit(along) * slender
     facing = np.array([0.0, 0.0, 1.0]) - unit * unit[:, 2:]
-    towards = np.clip(_unit(facing) @ LIGHT, 0.0, 1.0)
-    across = np.clip(lit[:, 0] * LIGHT[0] - lit[:, 1] * LIGHT[1], 0.0, 1.0)
+    towards = _share(_unit(facing) @ LIGHT)
+    across = _share(lit[:, 0] * LIGHT[0] - lit[:, 1] * LIGHT[1])
     return across, towards, lit
 
 
@@ -186,6 +191,10 @@ def _in_turn(farthest: list[int], earlier: list[int]) -> tuple[int, ...]:
         left &= ~(1 << row)
         order.append(row)
     return tuple(order)
+
+
+def _share(values: Array) -> Array:
+    return np.minimum(np.maximum(values, 0.0), 1.0)
 
 
 def _unit(vectors: Array) -> Array:

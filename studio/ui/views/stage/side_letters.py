@@ -41,8 +41,9 @@ class SideLetters:
         size = round(max(usual, height * OF_LARGE))
         ratio = painter.device().devicePixelRatio()
         shown = LETTERED if height >= SMALL_FIGURE else LETTERED[1:]
-        for turn, row in enumerate(rows):
-            if parts[row].name not in shown or _is_hidden(parts, seen, row, rows[turn + 1 :]):
+        lettered = [row for row in rows if parts[row].name in shown]
+        for row, is_hidden in zip(lettered, _hidden(parts, seen, lettered), strict=True):
+            if is_hidden:
                 continue
             corner = _beyond(seen, row, 0.75 * size) - QPointF(size / 2, size / 2)
             painter.drawPixmap(corner, self._badge(parts[row].tone == "left", size, letters, ratio))
@@ -85,18 +86,24 @@ def _beyond(seen: Outlines, row: int, distance: float) -> QPointF:
     return QPointF(x, y)
 
 
-def _is_hidden(parts: Sequence[Part], seen: Outlines, row: int, nearer: Sequence[int]) -> bool:
-    """Return whether all four ends of a part are behind nearer parts of other limbs."""
-    own = _limb(parts[row].place)
-    others = [other for other in nearer if _limb(parts[other].place) != own]
-    corners = seen.edges[others]
-    ends = seen.edges[row][:: EDGE // 4]
-    near = (corners.min(axis=1) < ends.max(axis=0)).all(axis=1) & (corners.max(axis=1) > ends.min(axis=0)).all(axis=1)
-    corners = corners[near][:, None] - ends[None, :, None]
-    after = np.roll(corners, -1, axis=2)
-    turns = corners[..., 0] * after[..., 1] - corners[..., 1] * after[..., 0]
-    inside = (turns >= 0.0).all(axis=2) | (turns <= 0.0).all(axis=2)
-    return bool(inside.any(axis=0).all())
+def _hidden(parts: Sequence[Part], seen: Outlines, rows: Sequence[int]) -> list[bool]:
+    """Return for parts whether all four ends of each are behind nearer parts of other limbs."""
+    if not rows:
+        return []
+    others = list(seen.order)
+    turn = {row: place for place, row in enumerate(others)}
+    limbs = [_LIMBS[parts[other].place] for other in others]
+    may_hide = [[turn[row] < k and _LIMBS[parts[row].place] != limb for k, limb in enumerate(limbs)] for row in rows]
+    ends = seen.edges[list(rows), :: EDGE // 4][:, :, None]
+    upper, along = seen.axis[others, 0], seen.axis[others, 1] - seen.axis[others, 0]
+    from_upper = ends - upper
+    share = (from_upper * along).sum(axis=-1) / np.maximum((along * along).sum(axis=-1), 1e-9)
+    share = np.minimum(np.maximum(share, 0.0), 1.0)
+    apart = from_upper - share[..., None] * along
+    width = seen.widths[others, 0] * (1.0 - share) + seen.widths[others, 1] * share
+    inside = ((apart * apart).sum(axis=-1) < width * width) & np.array(may_hide)[:, None]
+    hidden: list[bool] = inside.any(axis=2).all(axis=1).tolist()
+    return hidden
 
 
 def _limb(place: Place) -> str:
@@ -105,3 +112,6 @@ def _limb(place: Place) -> str:
     if not name:
         return "trunk"
     return f"{side} {'arm' if name in ARM else 'leg'}"
+
+
+_LIMBS = {place: _limb(place) for place in Place}
