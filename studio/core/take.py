@@ -97,6 +97,21 @@ class Alignment:
 
 
 @dataclass(frozen=True, slots=True)
+class CarriedAlignment:
+    """A body calibration made before the take began, and how it saw each sensor at the take's first sample.
+
+    The samples of its holds are not in the take: this is the fact that stands in for them.
+    """
+
+    alignment: Alignment
+    """Its times are take times: below 0, because the holds came before."""
+    time: float
+    """s of the take, where ``wearer_from_sensor`` holds."""
+    wearer_from_sensor: Mapping[Place, Quaternion]
+    """Attitude of each aligned sensor in the wearer's world (contracts §2); a heading for any filter to start from."""
+
+
+@dataclass(frozen=True, slots=True)
 class Setup:
     """The facts in force: replaced, never changed, and kept in each take."""
 
@@ -109,6 +124,8 @@ class Setup:
     mounting: Mounting = "unknown"
     performer: int = 1
     """Counts suits in one take."""
+    carried: CarriedAlignment | None = None
+    """None: the body is calibrated by poses held in the take, or not at all."""
 
 
 @dataclass(frozen=True, slots=True)
