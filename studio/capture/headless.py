@@ -1,14 +1,15 @@
 """Recording without a window: connect, wait for the sensors, keep a while, close."""
 
 import asyncio
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
 
 from studio.capture.live_session import LiveSession
-from studio.capture.setups import setup_for
+from studio.capture.setups import setup_for, with_stature
 from studio.capture.sources import open_source
 from studio.core.errors import FolderNotWritable, NoData, StudioError, WrittenByNewerStudio
+from studio.core.take import Setup
 from studio.storage.person_file import Person, load_person, save_person
 from studio.storage.take_file import Saved
 
@@ -23,6 +24,8 @@ class RecordRequest:
     library: Path
     person: str
     name: str
+    stature: float | None = None
+    """m; kept for the person. None: as known."""
 
 
 class Recorded(NamedTuple):
@@ -40,13 +43,14 @@ async def record(request: RecordRequest, session: LiveSession, stop: asyncio.Eve
     ------
     LinkError, RecordingError, SetupError, TakeFileError
     """
+    with_stature(request.library, request.person, request.stature)
     person = load_person(request.library, request.person)
     opened = await open_source(request.source)
     await session.connect(request.source, opened.link)
     stopper: asyncio.Task[bool] | None = None
     try:
         await session.sensors_known()
-        session.adopt(setup_for(session.infos, opened.setup, person))
+        session.adopt(_setup(request, session, opened.setup, person))
         recording = await session.start_recording(
             request.library, request.person, request.name, request.source, request.seconds
         )
@@ -64,6 +68,12 @@ async def record(request: RecordRequest, session: LiveSession, stop: asyncio.Eve
     if opened.setup is None:
         _remember(request, session, person)
     return Recorded(saved, recording.writer.failure)
+
+
+def _setup(request: RecordRequest, session: LiveSession, offered: Setup | None, person: Person) -> Setup:
+    """Return the setup of the recording; a stature that was asked for is stronger than what the source says."""
+    setup = setup_for(session.infos, offered, person)
+    return setup if request.stature is None else replace(setup, stature=request.stature, stature_known=True)
 
 
 def _remember(request: RecordRequest, session: LiveSession, person: Person) -> None:

@@ -1,9 +1,11 @@
 """Offline work as frozen requests and plain functions: what the worker process runs."""
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import NamedTuple
+
+import numpy as np
 
 from studio.core.pose import Motion
 from studio.core.sample import SensorId
@@ -30,6 +32,8 @@ class SolveRequest:
     calibration: str = "recorded"
     """``recorded``, ``latest`` (of each tag, on this computer) or the path of a calibration file."""
     poses: tuple[Mark, ...] = ()
+    stature: float | None = None
+    """m, for this run only. None: as recorded."""
 
 
 @dataclass(frozen=True)
@@ -72,6 +76,8 @@ class Loaded:
     take: Take
     options: SolveOptions
     key: str = field(repr=False)
+    notes: tuple[str, ...]
+    """What differs from the take as it was recorded."""
 
 
 def run_solve(request: SolveRequest, progress: Progress) -> SolveReport:
@@ -84,15 +90,16 @@ def run_solve(request: SolveRequest, progress: Progress) -> SolveReport:
     loaded = load(request, progress)
     progress("solve", 0.2)
     solution = solve(loaded.take, loaded.options)
-    keep(request.take, loaded.key, solution.motion)
-    progress("solve", 1.0)
     motion = solution.motion
+    keep(request.take, loaded.key, motion)
+    progress("solve", 1.0)
     offsets = {
         sensor: Offset(track.estimator, tuple(track.offset.tolist()), track.offset_sigma)
         for sensor, track in solution.tracks.items()
     }
+    notes = (*motion.notes, *loaded.notes)
     return SolveReport(
-        loaded.key, len(motion), motion.frame_s, motion.method, motion.attitude, motion.alignment, motion.notes, offsets
+        loaded.key, len(motion), motion.frame_s, motion.method, motion.attitude, motion.alignment, notes, offsets
     )
 
 
@@ -111,6 +118,7 @@ def run_export(request: ExportRequest, progress: Progress) -> tuple[Path, tuple[
         if motion is None:
             motion = solve(loaded.take, loaded.options).motion
             keep(request.solve.take, loaded.key, motion)
+        motion = replace(motion, notes=(*motion.notes, *loaded.notes))
     if request.exporter == "orientations":
         tracks = solve_tracks(loaded.take, loaded.options)
         orientations = {sensor: (track.time, track.attitude) for sensor, track in tracks.items()}
@@ -118,20 +126,41 @@ def run_export(request: ExportRequest, progress: Progress) -> tuple[Path, tuple[
     material = Material(loaded.take, motion, orientations, read_bvh)
     written, _ = export_file(request.exporter, material, request.wish, request.target)
     progress("write", 1.0)
-    return written, motion.notes if motion is not None else ()
+    return written, motion.notes if motion is not None else loaded.notes
 
 
 def load(request: SolveRequest, progress: Progress) -> Loaded:
     """Return the take of a request and its options."""
     progress("read", 0.0)
-    take, _ = read_take(request.take)
+    recorded, _ = read_take(request.take)
+    take = recorded
+    if request.stature is not None:
+        take = replace(take, setup=replace(take.setup, stature=request.stature, stature_known=True))
     options = SolveOptions(
         attitude=request.attitude,
         method="live" if request.method == "live" else "offline",
         poses=request.poses,
         calibrations=_calibrations(request.calibration, take),
     )
-    return Loaded(take, options, motion_key(request.take, take, options))
+    return Loaded(take, options, motion_key(request.take, take, options), _departures(request, recorded))
+
+
+def _departures(request: SolveRequest, recorded: Take) -> tuple[str, ...]:
+    notes = []
+    if request.stature is not None and (request.stature, True) != (
+        recorded.setup.stature,
+        recorded.setup.stature_known,
+    ):
+        before = f"{recorded.setup.stature:.2f} m" if recorded.setup.stature_known else "none"
+        notes.append(f"Stature {request.stature:.2f} m for this run only; the take has {before}.")
+    if request.poses and recorded.poses():
+        named, kept = _spans(request.poses), _spans(recorded.poses())
+        notes.append(f"The poses named for this run ({named}) replace all those of the take ({kept}).")
+    return tuple(notes)
+
+
+def _spans(poses: Sequence[Mark]) -> str:
+    return ", ".join(f"{mark.label} {mark.time:.1f} to {np.fmax(mark.end, mark.time):.1f} s" for mark in poses)
 
 
 def keep(folder: Path, key: str, motion: Motion) -> None:

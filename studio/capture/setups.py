@@ -3,11 +3,14 @@
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import replace
+from pathlib import Path
+
+import msgspec
 
 from studio.core.body import DEFAULT_STATURE, PLACES
 from studio.core.sample import SensorId, SensorInfo
 from studio.core.take import Assignment, Setup
-from studio.storage.person_file import Person
+from studio.storage.person_file import Person, load_person, save_person
 
 
 def assigned_by_number(infos: Mapping[SensorId, SensorInfo]) -> Assignment:
@@ -43,3 +46,19 @@ def setup_for(infos: Mapping[SensorId, SensorInfo], offered: Setup | None, perso
         # Tags come with an arrow and pictures of the places; foreign recordings do not pass here.
         mounting="strapped",
     )
+
+
+def with_stature(library: Path, code: str, stature: float | None) -> float | None:
+    """Return the stature in m of a person, None when unknown; one that is told is kept for who has a code.
+
+    Raises
+    ------
+    SetupError, RecordingError, TakeFileError
+    """
+    if not code:
+        return stature
+    person = load_person(library, code)
+    if stature is None:
+        return person.stature
+    save_person(library, code, msgspec.structs.replace(person, stature=stature))
+    return stature

@@ -18,6 +18,9 @@ from studio.importers.registry import IMPORTERS
 POSES: tuple[PoseName, ...] = ("n", "t", "bow", "sit")
 _POSE = re.compile(r"(?P<name>[a-z]+)=(?P<first>[0-9.]+)\.\.(?P<last>[0-9.]+)")
 
+SHORTEST, TALLEST = 0.3, 2.8  # m; as in the map of a table (resources/map.schema.json)
+LOWEST_CM = 30.0  # a stature from here on is meant in cm
+
 SOURCES = """\
 A SOURCE is one of
   synthetic[:SCRIPT][?tags=15&loss=0.05&seed=1&calibrated=1&speed=max]   a simulated performer
@@ -61,6 +64,7 @@ def _record(add: AddVerb) -> None:
     verb.add_argument("--library", type=Path, required=True, metavar="DIR")
     verb.add_argument("--person", default="", metavar="CODE", help="a code such as P014, never a name")
     verb.add_argument("--name", default="take", help="what the take is called")
+    _add_stature(verb, "kept for the person, if one is named")
     verb.set_defaults(run=verbs.record)
 
 
@@ -70,7 +74,8 @@ def _import(add: AddVerb) -> None:
     verb.add_argument("--format", choices=("auto", *IMPORTERS), default="auto")
     verb.add_argument("--map", type=Path, metavar="FILE", help="what the columns of a table mean (csv)")
     verb.add_argument("--library", type=Path, required=True, metavar="DIR")
-    verb.add_argument("--person", default="", metavar="CODE")
+    verb.add_argument("--person", default="", metavar="CODE", help="a code such as P014, never a name")
+    _add_stature(verb, "kept for the person, if one is named")
     verb.set_defaults(run=verbs.import_recording, usage_error=verb.error)
 
 
@@ -108,6 +113,7 @@ def _export(add: AddVerb) -> None:
 
 
 def _add_solving(verb: argparse.ArgumentParser) -> None:
+    _add_stature(verb, "for this run only")
     verb.add_argument("--attitude", choices=tuple(ESTIMATORS), default="vqf")
     verb.add_argument("--method", choices=("offline", "live"), default="offline")
     verb.add_argument(
@@ -122,6 +128,20 @@ def _add_solving(verb: argparse.ArgumentParser) -> None:
         metavar="NAME=FROM..TO",
         help="a pose held between two times in s (n, t, bow, sit); may be repeated; replaces the recorded ones",
     )
+
+
+def _add_stature(verb: argparse.ArgumentParser, effect: str) -> None:
+    verb.add_argument(
+        "--stature", type=_stature, metavar="METRES|CM", help=f"how tall the person is, such as 1.72 or 172; {effect}"
+    )
+
+
+def _stature(text: str) -> float:
+    number = _number(text.replace(",", "."))
+    metres = number if number < LOWEST_CM else number / 100
+    if not SHORTEST <= metres <= TALLEST:
+        raise argparse.ArgumentTypeError(f"{text!r} is no stature from {SHORTEST} to {TALLEST} m, nor one in cm")
+    return metres
 
 
 def _seconds(text: str) -> float:

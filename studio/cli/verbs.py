@@ -45,7 +45,14 @@ def devices(arguments: Namespace) -> None:
 
 def record(arguments: Namespace) -> None:
     """Record a take; Ctrl+C and a polite kill end it as the time would."""
-    request = RecordRequest(arguments.source, arguments.seconds, arguments.library, arguments.person, arguments.name)
+    request = RecordRequest(
+        arguments.source,
+        arguments.seconds,
+        arguments.library,
+        arguments.person,
+        arguments.name,
+        arguments.stature,
+    )
     _tell_of_recovered(arguments.library)
     runtime = Runtime()
     session = LiveSession(pre_roll=FOREVER)
@@ -80,7 +87,9 @@ def import_recording(arguments: Namespace) -> None:
     """Import a foreign recording."""
     if arguments.map is not None and arguments.format == "xio":
         arguments.usage_error("--map explains tables; x-io recordings explain themselves")
-    folder = library.import_into(arguments.library, arguments.paths, arguments.format, arguments.map, arguments.person)
+    folder = library.import_into(
+        arguments.library, arguments.paths, arguments.format, arguments.map, arguments.person, arguments.stature
+    )
     print(folder)
 
 
@@ -120,7 +129,12 @@ def export(arguments: Namespace) -> None:
 
 def _solve_request(arguments: Namespace) -> jobs.SolveRequest:
     return jobs.SolveRequest(
-        arguments.take, arguments.attitude, arguments.method, arguments.calibration, tuple(arguments.poses)
+        arguments.take,
+        arguments.attitude,
+        arguments.method,
+        arguments.calibration,
+        tuple(arguments.poses),
+        arguments.stature,
     )
 
 
