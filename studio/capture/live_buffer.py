@@ -32,6 +32,8 @@ class Window(NamedTuple):
     """(n,), frames that are missing just before each sample."""
     clipped: NDArray[np.bool_]
     """(n,), readings at the end of the chip's range."""
+    flags: NDArray[np.int64]
+    """(n,), ``Flag`` of each sample."""
 
 
 class LiveBuffer:
@@ -107,5 +109,5 @@ def _window(rows: NDArray[np.float64]) -> Window:
     frames = rows[:, 11].astype(np.int64)
     lost = np.zeros(len(rows), np.int64)
     lost[1:] = np.maximum(np.diff(frames) - 1, 0)
-    clipped = rows[:, 12].astype(np.int64) & int(Flag.CLIPPED) > 0
-    return Window(rows[:, 0], rows[:, 1:5], rows[:, 5:8], rows[:, 8:11], lost, clipped)
+    flags = rows[:, 12].astype(np.int64)
+    return Window(rows[:, 0], rows[:, 1:5], rows[:, 5:8], rows[:, 8:11], lost, flags & int(Flag.CLIPPED) > 0, flags)

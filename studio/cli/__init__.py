@@ -3,6 +3,7 @@
 Exit codes: 0 done, 1 the operator can act (one sentence on stderr), 2 usage.
 """
 
+import os
 import sys
 from collections.abc import Sequence
 
@@ -12,10 +13,15 @@ from studio.storage.crash_report import crash_folder, write_crash_report
 from studio.ui.wording import one_line
 
 DONE, REFUSED = 0, 1
+SCREENS = ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM")
 
-NO_WINDOW_YET = (
-    "The window of Kinetag Studio is not part of this version yet. "
-    "Everything works from the command line: studio --help lists the verbs."
+NO_SCREEN = (
+    "There is no screen to open the window on. Neither DISPLAY nor WAYLAND_DISPLAY is set. "
+    "Start the studio from a desktop, or use a verb: {command} --help lists them."
+)
+NO_LIBRARY = (
+    "The window cannot be opened: a library of the system that Qt needs is missing ({name}). "
+    "{command} installs it when it may; otherwise install libegl1 and libxkbcommon0, then start again."
 )
 
 MISTAKE = (
@@ -28,8 +34,7 @@ def main(argv: Sequence[str]) -> int:
     """Run one verb and return the exit code."""
     arguments = parser().parse_args(argv)
     if arguments.verb is None:
-        print(NO_WINDOW_YET)
-        return DONE
+        return _window()
     try:
         arguments.run(arguments)
     except StudioError as refusal:
@@ -41,3 +46,17 @@ def main(argv: Sequence[str]) -> int:
         print(MISTAKE.format(report=write_crash_report(mistake, crash_folder())), file=sys.stderr)
         return REFUSED
     return DONE
+
+
+def _window() -> int:
+    """Open the window; say in one sentence why that is not possible."""
+    command = "studio.bat" if sys.platform == "win32" else "./studio.sh"
+    if sys.platform.startswith("linux") and not any(os.environ.get(name) for name in SCREENS):
+        print(NO_SCREEN.format(command=command), file=sys.stderr)
+        return REFUSED
+    try:
+        from studio.ui.application import run  # the verbs start without Qt
+    except ImportError as missing:
+        print(NO_LIBRARY.format(command=command, name=str(missing).partition(":")[0]), file=sys.stderr)
+        return REFUSED
+    return run()

@@ -71,6 +71,18 @@ def save_tag(sensor: SensorId, tag: Tag, folder: Path) -> None:
         raise FolderNotWritable(str(folder)) from error
 
 
+def rename_tag(sensor: SensorId, nickname: str, folder: Path) -> Tag:
+    """Give a tag a name on this computer and return what is known of it now.
+
+    Raises
+    ------
+    WrittenByNewerStudio, FolderNotWritable
+    """
+    tag = msgspec.structs.replace(load_tag(sensor, folder), nickname=nickname.strip())
+    save_tag(sensor, tag, folder)
+    return tag
+
+
 def add_calibration(calibration: Calibration, folder: Path) -> None:
     """Keep a calibration as the newest of its tag.
 

@@ -61,6 +61,14 @@ class LiveShow(QObject):
         known = frozenset(p for p, limb in alignment.limbs.items() if limb.source != "unknown") - frozenset(silent)
         return StagePose(pose.world_from_segment, joints, known, silent)
 
+    def forget_newest(self) -> None:
+        """Bring the newest pose once more: another figure shows it."""
+        self._newest = None
+
+    def has_body(self) -> bool:
+        """Whether there is a body to show."""
+        return self._model.alignment is not None and bool(self._model.source)
+
     def silent(self) -> dict[Place, str]:
         """Return the places whose sensor has stopped sending, with their names."""
         health, worn = self._model.health, self._model.setup.assignment.sensors

@@ -141,6 +141,8 @@ _READ: dict[str, tuple[Callable[[Any], Any], Callable[[Any], bool]]] = {
     "last_source": (str, _is(str)),
     "last_person": (str, _is(str)),
     "last_preset": (str, _is(str)),
+    "export_folder": (str, _is(str)),
+    "take_name": (str, _is(str)),
     "geometry": (_bytes, _is(bytes)),
     "clicker": (_truth, _is(bool)),
     "keys": (_keys, _is(dict)),

@@ -29,7 +29,7 @@ def window(now, rate):
     lost = np.zeros(count, np.int64)
     lost[::50] = 1
     level = np.tile([1.0, 0.0, 0.0, 0.0], (count, 1))
-    return Window(times, level, turning, 9.81 * turning, lost, np.zeros(count, np.bool_))
+    return Window(times, level, turning, 9.81 * turning, lost, np.zeros(count, np.bool_), np.zeros(count, np.int64))
 
 
 def arranged(qtbot, plots):

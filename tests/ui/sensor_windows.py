@@ -49,4 +49,5 @@ def window(until, seconds=11.0, rate=0.0, missing=(), clipped=(), turned=(0.0, 0
         np.tile(force, (int(kept.sum()), 1)),
         lost[kept],
         np.isin(frames, clipped)[kept],
+        np.zeros(int(kept.sum()), np.int64),
     )

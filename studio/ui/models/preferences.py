@@ -32,6 +32,11 @@ class Preferences:
     last_source: str = ""
     last_person: str = ""
     last_preset: str = ""
+    """What was exported last, in the words of ``ExportChoice.preset``."""
+    export_folder: str = ""
+    """Where exported files go; empty for the studio's own place."""
+    take_name: str = ""
+    """Name of the next take, as it was typed."""
     geometry: bytes = b""
     """Of the window, as Qt saves it."""
     clicker: bool = False

@@ -4,9 +4,10 @@ The three places where threads meet are here and nowhere else in ``ui``: ``sessi
 events, and ``runtime.call``.
 """
 
+import asyncio
 import math
 import time
-from collections.abc import Callable, Coroutine, Mapping
+from collections.abc import Callable, Collection, Coroutine, Mapping
 from concurrent.futures import Future
 from dataclasses import replace
 from datetime import UTC, datetime
@@ -14,27 +15,32 @@ from pathlib import Path
 from queue import Empty
 from typing import Any, TypeVar
 
+import numpy as np
 from PySide6.QtCore import QObject, Signal
 
 from studio.acquisition.health import HealthSnapshot
 from studio.capture import events
 from studio.capture.live_buffer import LiveBuffer
 from studio.capture.live_session import LiveSession
+from studio.capture.next_take import NextTake, next_take
+from studio.capture.procedures.judged_hold import Judged
 from studio.capture.runtime import Runtime
 from studio.capture.setups import setup_for
 from studio.capture.sources import open_source
 from studio.capture.worker import Worker
-from studio.core.errors import StudioError
+from studio.core.body import Place
+from studio.core.errors import FolderNotWritable, StudioError, WrittenByNewerStudio
 from studio.core.rest import Rest
 from studio.core.sample import NO_CORRECTION, Correction, SensorId, SensorInfo
 from studio.core.take import Alignment, Assignment, Calibration, Mark, Setup
-from studio.storage.person_file import Person
+from studio.storage.person_file import Person, load_person, save_person
 from studio.storage.take_file import Saved
 from studio.ui.operation import Operation
 
 T = TypeVar("T")
 
 HEALTH_EVERY = 0.25  # s
+FLAGS_SECONDS = 1.0  # s
 
 
 class StudioModel(QObject):
@@ -42,6 +48,8 @@ class StudioModel(QObject):
 
     source_changed = Signal()
     """Another source, or none."""
+    source_refused = Signal(object)
+    """StudioError: the source cannot be opened, or was lost."""
     sensors_changed = Signal()
     """A sensor appeared, or more is known of one."""
     health_changed = Signal()
@@ -50,10 +58,15 @@ class StudioModel(QObject):
     """An Alignment is in force."""
     alignment_refused = Signal(object)
     """AlignmentError."""
+    hold_judged = Signal(object)
+    """Judged: what became of the hold that was asked about."""
+    noted = Signal(str, object)
+    """Something happened on a link: its kind, and its facts."""
     recording_started = Signal(object)
     """The folder of the take."""
     recording_full = Signal()
     """Nothing more can be kept: the disk, or the source's end."""
+    next_take_changed = Signal()
     recording_saved = Signal(object)
     """Saved."""
     recording_failed = Signal(object)
@@ -72,11 +85,13 @@ class StudioModel(QObject):
         self.health: Mapping[SensorId, HealthSnapshot] = {}
         self.queue_fill = 0.0
         self.seconds_left: float | None = None
+        self.next_take = NextTake("", 1)
         self.worker = Worker()
         self._runtime = Runtime()
         self._session = LiveSession()
         self._operations: list[Operation] = []
         self._health_at = -math.inf
+        self._knows_body = False
 
     @property
     def buffer(self) -> LiveBuffer:
@@ -93,11 +108,25 @@ class StudioModel(QObject):
         """The setup in force."""
         return self._session.setup
 
+    @property
+    def is_recording(self) -> bool:
+        """Whether samples are being kept."""
+        return self._session.recording is not None
+
+    def now(self) -> float:
+        """Return the clock of the samples, s."""
+        return time.perf_counter()
+
+    def flags(self, sensor: SensorId) -> int:
+        """Return the flags a sensor raised lately."""
+        window = self.buffer.snapshot((sensor,), FLAGS_SECONDS).get(sensor)
+        return 0 if window is None or not len(window.flags) else int(np.bitwise_or.reduce(window.flags))
+
     def open(self, source: str) -> None:
         """Connect to a source instead of the one that is open."""
         self.connecting, self.source = True, source
         self.source_changed.emit()
-        self._ask(self._connect(source), self._connected)
+        self._ask(self._connect(source), self._connected, self._not_connected)
 
     def close_source(self) -> None:
         """Disconnect."""
@@ -107,28 +136,37 @@ class StudioModel(QObject):
         """Put sensors on other places: the body must be aligned again."""
         self.adopt(replace(self.setup, assignment=assignment))
 
+    def set_stature(self, stature: float) -> None:
+        """Enter the height of the person, m."""
+        self.adopt(replace(self.setup, stature=stature, stature_known=True))
+
     def adopt(self, setup: Setup) -> None:
         """Put another setup in force."""
         if setup.assignment != self.setup.assignment:
             self.alignment = None
         self._ask(self._adopt(setup), self._adopted)
 
-    def keep_rest(self, sensor: SensorId, rest: Rest) -> None:
-        """Correct a gyroscope by the offset it showed while it lay still; its gain stays."""
-        info = self.infos.get(sensor)
-        if info is None:
-            return
-        gain = (info.correction or NO_CORRECTION).gain
-        x, y, z = (float(value) for value in rest.offset)
-        sx, sy, sz = (float(value) for value in rest.sigma)
+    def keep_rests(self, rests: Mapping[SensorId, Rest]) -> None:
+        """Correct gyroscopes by the offset they showed while they lay still; their gains stay."""
         now = datetime.now(UTC).isoformat(timespec="seconds")
-        fresh = Calibration(sensor, Correction((x, y, z), gain), now, "rest", offset_sigma=(sx, sy, sz))
-        others = tuple(known for known in self.setup.calibrations if known.sensor != sensor)
-        self.adopt(replace(self.setup, calibrations=(*others, fresh)))
+        infos = self.infos
+        fresh = [_calibration(infos[sensor], rest, now) for sensor, rest in rests.items() if sensor in infos]
+        others = [known for known in self.setup.calibrations if known.sensor not in rests]
+        self.adopt(replace(self.setup, calibrations=(*others, *fresh)))
 
-    def hold(self, pose: Mark) -> None:
-        """A pose was held; times on the clock of the samples."""
-        self._ask(self._hold(pose), _nothing)
+    def hold(self, pose: Mark, only: Collection[Place] = ()) -> None:
+        """A pose was held, by the whole body or to repeat some limbs; times on the clock of the samples."""
+        self._ask(self._hold(pose, only), self.hold_judged.emit)
+
+    def choose_person(self, code: str) -> None:
+        """Capture another person: their stature and, where the source knows no body, what they wore last."""
+        self.person = code
+        self._ask(self._meet(code), self._adopted)
+
+    def look_for_next_take(self) -> None:
+        """Find out which number the next take will have."""
+        library, person = self.library, self.person
+        self.work(lambda: next_take(library, person), self._found_next_take)
 
     def start_recording(self, name: str) -> None:
         """Start a take."""
@@ -147,6 +185,12 @@ class StudioModel(QObject):
         """Start an operation and look after it until it is over."""
         operation.begin(start)
         self._operations.append(operation)
+
+    def work(
+        self, task: Callable[[], T], done: Callable[[T], None], refused: Callable[[StudioError], None] | None = None
+    ) -> None:
+        """Let something that waits for the disk be done away from the Qt thread."""
+        self._ask(asyncio.to_thread(task), done, refused)
 
     def tick(self, now: float) -> None:
         """Tell what has happened since the last tick."""
@@ -184,11 +228,14 @@ class StudioModel(QObject):
 
     async def _connect(self, source: str) -> None:
         await self._session.disconnect()
-        opened = await open_source(source)
         self._session.forget()
+        self._knows_body = False
+        opened = await open_source(source)
+        self._knows_body = opened.setup is not None
         await self._session.connect(source, opened.link)
         await self._session.sensors_known()
-        self._session.adopt(setup_for(self._session.infos, opened.setup, Person()))
+        person = await asyncio.to_thread(load_person, self.library, self.person)
+        self._session.adopt(setup_for(self._session.infos, opened.setup, person))
 
     async def _disconnect(self) -> None:
         await self._session.disconnect()
@@ -196,9 +243,27 @@ class StudioModel(QObject):
 
     async def _adopt(self, setup: Setup) -> None:
         self._session.adopt(setup)
+        if not self._knows_body:
+            await asyncio.to_thread(self._remember, setup)
 
-    async def _hold(self, pose: Mark) -> None:
-        self._session.held(pose)
+    async def _meet(self, code: str) -> None:
+        person = await asyncio.to_thread(load_person, self.library, code)
+        if self._session.infos and not self._knows_body:
+            known = setup_for(self._session.infos, None, person)
+            self._session.adopt(replace(known, calibrations=self._session.setup.calibrations))
+
+    def _remember(self, setup: Setup) -> None:
+        """Keep stature and assignment for the next time; a library that cannot be written is told when recording."""
+        stature = setup.stature if setup.stature_known else None
+        try:
+            save_person(
+                self.library, self.person, Person(stature=stature, assignment=setup.assignment, mounting=setup.mounting)
+            )
+        except (FolderNotWritable, WrittenByNewerStudio):
+            return
+
+    async def _hold(self, pose: Mark, only: Collection[Place]) -> Judged:
+        return await self._session.held(pose, only)
 
     async def _mark(self, label: str) -> None:
         self._session.mark(label)
@@ -216,12 +281,24 @@ class StudioModel(QObject):
         self.source_changed.emit()
         self.setup_changed.emit()
 
+    def _not_connected(self, error: StudioError) -> None:
+        self._lost(error)
+
+    def _lost(self, error: StudioError) -> None:
+        """The source is closed; why is told."""
+        self._ask(self._disconnect(), self._disconnected)
+        self.source_refused.emit(error)
+
     def _disconnected(self, _: object) -> None:
         self.source, self.connecting, self.alignment = "", False, None
         self.source_changed.emit()
 
     def _adopted(self, _: object) -> None:
         self.setup_changed.emit()
+
+    def _found_next_take(self, found: NextTake) -> None:
+        self.next_take = found
+        self.next_take_changed.emit()
 
     def _saved(self, saved: Saved) -> None:
         self.recording_saved.emit(saved)
@@ -242,10 +319,19 @@ class StudioModel(QObject):
             self.alignment_refused.emit(event.error)
         elif isinstance(event, events.RecordingStarted):
             self.recording_started.emit(event.folder)
+        elif isinstance(event, events.LinkNoted):
+            self.noted.emit(event.kind, event.facts)
         elif isinstance(event, events.LinkEnded):
             self.recording_full.emit()
-            if event.error is not None:
-                self.refused.emit(event.error)
+            if event.error is not None and event.source == self.source and not self.connecting:
+                self._lost(event.error)
+
+
+def _calibration(info: SensorInfo, rest: Rest, date: str) -> Calibration:
+    x, y, z = (float(value) for value in rest.offset)
+    sx, sy, sz = (float(value) for value in rest.sigma)
+    gain = (info.correction or NO_CORRECTION).gain
+    return Calibration(info.sensor, Correction((x, y, z), gain), date, "rest", offset_sigma=(sx, sy, sz))
 
 
 def _nothing(_: object) -> None:

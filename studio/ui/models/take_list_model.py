@@ -92,6 +92,10 @@ class TakeListModel(QAbstractListModel):
         """Show only takes with a star, or all."""
         self._refilter(self._words, on)
 
+    def newest(self) -> list[TakeSummary]:
+        """Return all takes, shown or not, newest first."""
+        return sorted((entry.summary for entry in self._all.values()), key=age_order, reverse=True)
+
     def row_of(self, folder: Path) -> int | None:
         """Return the row of a take, None when it is not shown."""
         return next((row for row, summary in enumerate(self._shown) if summary.folder == folder), None)

@@ -2,8 +2,8 @@
 
 from collections.abc import Mapping
 
-from PySide6.QtCore import QSignalBlocker, QSize, Qt
-from PySide6.QtGui import QKeySequence, QResizeEvent
+from PySide6.QtCore import QSignalBlocker, QSize, Qt, Signal
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import (
     QComboBox,
     QFrame,
@@ -14,6 +14,7 @@ from PySide6.QtWidgets import (
     QListWidgetItem,
     QPushButton,
     QScrollArea,
+    QSpinBox,
     QVBoxLayout,
     QWidget,
 )
@@ -30,6 +31,7 @@ PANEL = 380  # px at 100 % text
 SHARE = 0.52  # of the page that the panel may take when text is large
 LIST_ROWS = 3  # tags that are seen without scrolling
 SENSOR = Qt.ItemDataRole.UserRole
+STATURES = (50, 250)  # cm; from a child who can just stand to the tallest person on record (251 cm, living)
 
 
 class TagList(QListWidget):
@@ -42,6 +44,9 @@ class TagList(QListWidget):
 
 class AssignPage(QWidget):
     """Renders the assignment; every press goes to the model."""
+
+    stature_chosen = Signal(float)
+    """Height of the person, m."""
 
     def __init__(
         self,
@@ -70,6 +75,13 @@ class AssignPage(QWidget):
     def moved(self, sensor: SensorId) -> None:
         """A sensor is being moved: it goes to the place that waits."""
         self._model.moved(sensor)
+
+    def show_stature(self, stature: float, *, known: bool) -> None:
+        """Show the height of the person, m; one that nobody entered is said to be assumed."""
+        with QSignalBlocker(self.stature):
+            self.stature.setValue(round(100 * stature))
+        self._stature_hint.setText("" if known else self.tr("assumed: enter the real height"))
+        self._stature_hint.setVisible(not known)
 
     def tick(self, now: float) -> None:
         """Let the waiting place pulse."""
@@ -129,6 +141,8 @@ class AssignPage(QWidget):
         column.addWidget(self._build_card())
         column.addSpacing(GAP)
         self._build_tools(column)
+        column.addSpacing(GAP)
+        self._build_stature(column)
         column.addStretch(1)
         self._panel.setWidget(inside)
         page = QHBoxLayout(self)
@@ -195,9 +209,7 @@ class AssignPage(QWidget):
         self.cross.setToolTip(self.tr("Exchange the tags of shanks and feet"))
         self.cross.setAccessibleName(self.cross.toolTip())
         self.undo = self._button(self.tr("Undo"), self._model.undo)
-        self.undo.setShortcut(QKeySequence(QKeySequence.StandardKey.Undo))
         self.redo = self._button(self.tr("Redo"), self._model.redo)
-        self.redo.setShortcut(QKeySequence(QKeySequence.StandardKey.Redo))
         self.clear = self._button(self.tr("Take all off"), self._model.clear)
         for button in (self.undo, self.redo, self.clear):
             button.setProperty("kind", "quiet")
@@ -214,6 +226,22 @@ class AssignPage(QWidget):
         last.addStretch(1)
         last.addWidget(self.clear)
         column.addLayout(last)
+
+    def _build_stature(self, column: QVBoxLayout) -> None:
+        words = QLabel(self.tr("Height of the person"), self)
+        self.stature = QSpinBox(self)
+        self.stature.setRange(*STATURES)
+        self.stature.setSuffix(self.tr(" cm"))
+        self.stature.setAccessibleName(words.text())
+        self.stature.setKeyboardTracking(False)
+        self.stature.valueChanged.connect(self._choose_stature)
+        self._stature_hint = self._label("muted")
+        row = QHBoxLayout()
+        row.setSpacing(GAP)
+        row.addWidget(words, 1)
+        row.addWidget(self.stature)
+        column.addLayout(row)
+        column.addWidget(self._stature_hint)
 
     def _label(self, role: str) -> QLabel:
         label = QLabel(self)
@@ -312,6 +340,10 @@ class AssignPage(QWidget):
 
     def _choose_preset(self, row: int) -> None:
         self._model.choose_preset(PRESET_NAMES[row])
+
+    def _choose_stature(self, centimetres: int) -> None:
+        self._stature_hint.hide()
+        self.stature_chosen.emit(centimetres / 100)
 
     def _toggle_moving(self) -> None:
         if self._model.waiting is None:

@@ -86,6 +86,10 @@ class CapturePage(QWidget):
         self._countdown.setText(str(count))
         self._place_countdown()
 
+    def show_elapsed(self, elapsed: float) -> None:
+        """Show how long it has been recording, s."""
+        self.clock.setText(clock(elapsed))
+
     def show_angles(self, shown: Sequence[Shown], words: Mapping[str, str]) -> None:
         """Show the chosen angles; ``words`` are their names for people."""
         self._words = words

@@ -220,4 +220,5 @@ def _from(window: Window, first: int) -> Window:
         window.acceleration[first:],
         window.lost_before[first:],
         window.clipped[first:],
+        window.flags[first:],
     )

@@ -1,0 +1,42 @@
+"""What the worker does for somebody who looks at a take: solve it once, and keep the motion for the next time."""
+
+from pathlib import Path
+from typing import NamedTuple
+
+from studio.capture.jobs import Progress, SolveRequest, load
+from studio.core.pose import Motion
+from studio.core.solver import solve
+from studio.core.take import Mark
+from studio.storage.motion_file import load_motion, save_motion
+
+
+class Solved(NamedTuple):
+    """A take that can be looked at."""
+
+    folder: Path
+    key: str
+    """Of the motion in ``derived/``."""
+    motion: Motion | None
+    """Only when it could not be kept there: a library that cannot be written."""
+    marks: tuple[Mark, ...]
+
+
+def run_review(request: SolveRequest, progress: Progress) -> Solved:
+    """Return the motion of a take, computed unless that was done before.
+
+    Raises
+    ------
+    TakeFileError, CalibrationError, AlignmentError
+    """
+    loaded = load(request, progress)
+    progress("solve", 0.2)
+    kept = load_motion(request.take, loaded.key)
+    if kept is not None:
+        return Solved(request.take, loaded.key, None, loaded.take.marks)
+    motion = solve(loaded.take, loaded.options).motion
+    try:
+        save_motion(request.take, loaded.key, motion)
+    except OSError:
+        return Solved(request.take, loaded.key, motion, loaded.take.marks)
+    progress("solve", 1.0)
+    return Solved(request.take, loaded.key, None, loaded.take.marks)

@@ -1,0 +1,1 @@
+"""Between pages and models: each joins one page to what it shows and does."""

@@ -1,0 +1,348 @@
+"""The window and everything behind it, made once and joined: start reading the window here."""
+
+import json
+import shutil
+from pathlib import Path
+from typing import Protocol
+
+from PySide6.QtCore import QObject
+from PySide6.QtWidgets import QApplication
+
+from studio.core.body import Place
+from studio.storage.take_summary import TakeSummary
+from studio.ui.display_tick import DisplayTick
+from studio.ui.live_show import LiveShow
+from studio.ui.models.assignment_model import AssignmentModel
+from studio.ui.models.export_choice import ExportChoice
+from studio.ui.models.hold_model import HoldModel
+from studio.ui.models.live_angles import LiveAngles
+from studio.ui.models.place_words import PlaceWords, place_words
+from studio.ui.models.playhead import Playhead
+from studio.ui.models.recorder import Recorder
+from studio.ui.models.studio_model import StudioModel
+from studio.ui.presenters.assign import AssignPresenter
+from studio.ui.presenters.calibrate import CalibratePresenter
+from studio.ui.presenters.capture import CapturePresenter
+from studio.ui.presenters.connect import ConnectPresenter
+from studio.ui.presenters.diagnostics import DiagnosticsPresenter
+from studio.ui.presenters.export import ExportPresenter
+from studio.ui.presenters.home import HomePresenter
+from studio.ui.presenters.look import LookPresenter
+from studio.ui.presenters.notices import Notices
+from studio.ui.presenters.people import PeoplePresenter
+from studio.ui.presenters.preferences import PreferencesPresenter, library_folder
+from studio.ui.presenters.review import ReviewPresenter
+from studio.ui.presenters.stages import Stages
+from studio.ui.settings import Settings
+from studio.ui.sound import Sound
+from studio.ui.theme import Theme
+from studio.ui.views.assign_page import AssignPage
+from studio.ui.views.calibration_page import CalibrationPage
+from studio.ui.views.capture_page import CapturePage
+from studio.ui.views.connect_page import ConnectPage
+from studio.ui.views.diagnostics_page import DiagnosticsPage
+from studio.ui.views.export_page import ExportPage
+from studio.ui.views.home_page import HomePage
+from studio.ui.views.main_window import MainWindow
+from studio.ui.views.plots.angle_plot import AnglePlot
+from studio.ui.views.review_page import ReviewPage
+from studio.ui.views.settings_page import SettingsPage
+from studio.ui.views.stage.stage import Stage
+from studio.ui.views.traces import Traces
+
+PLACES_FILE = Path(__file__).resolve().parents[2] / "resources" / "places.json"
+FIRST_SOURCE = "synthetic:walk?calibrated=1&ahead=9"
+"""What the first start shows: somebody who has held the poses already, and walks."""
+STRIP_EVERY = 0.1  # s
+DISK_EVERY = 5.0  # s
+TAKE_BYTES = 60_000.0  # bytes a second of 15 tags at 50 Hz, raw and decoded (tests/storage measures it)
+
+
+class Keyed(Protocol):
+    """A presenter whose page has keys of its own."""
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """Actions of the table in ``ui.keys``."""
+        ...
+
+    def act(self, action: str) -> bool:
+        """Do what a key asks for; return whether it was done here."""
+        ...
+
+
+class StudioWindow(QObject):
+    """Owns the models, the pages and the presenters; no page knows another."""
+
+    def __init__(self, application: QApplication, theme: Theme, settings: Settings) -> None:
+        super().__init__()
+        self.theme, self.settings = theme, settings
+        self._application = application
+        self.model = StudioModel(library_folder(settings), self)
+        self.model.person = settings.values.last_person
+        self.recorder = Recorder(self)
+        self.angles = LiveAngles(self)
+        self.holds = HoldModel(self)
+        self.sound = Sound(self)
+        self.tick = DisplayTick(self)
+        self._at = self._disk_at = float("-inf")
+        self._disk_left: float | None = None
+        self._offered = ""
+        words = self._words()
+        self._names = {place: said.name for place, said in words.items()}
+        self.show = LiveShow(self.model, self.recorder, self.angles, self._names)
+        self._build_pages(words)
+        self.notices = Notices(self.window)
+        self._build_presenters()
+        self._wire()
+
+    def start(self, source: str) -> None:
+        """Show the window, begin to tick, and open a source."""
+        window = self.window
+        window.restore_geometry_state(self.settings.values.geometry)
+        self.go_to("home")
+        window.show()
+        self.review.read_library()
+        self.people.read_library()
+        if source:
+            self.model.open(source)
+        self.tick.start()
+
+    def offer_last(self, source: str) -> None:
+        """Tell that the last starts did not end well, and offer to open ``source`` all the same."""
+        self._offered = source
+        self.window.show_safe_start()
+
+    def go_to(self, name: str) -> None:
+        """Show a page."""
+        if name not in self.pages:
+            return
+        self.window.show_page(name)
+        self.stages.show_page(name)
+        if name == "connect":
+            self.connect_.shown()
+        elif name == "review" and not self.review.is_current:
+            self.review.read_library()
+
+    def shut_down(self) -> None:
+        """Stop everything in order; what is being recorded is saved first."""
+        self.tick.stop()
+        self.settings.set("geometry", self.window.geometry_state())
+        self.settings.set("last_source", self.model.source)
+        self.settings.flush()
+        self.model.shut_down()
+
+    def _words(self) -> dict[Place, PlaceWords]:
+        parsed = json.loads(PLACES_FILE.read_text(encoding="utf-8"))
+        return place_words(parsed, "clinic" if self.settings.values.vocabulary == "clinic" else "plain")
+
+    def _build_pages(self, words: dict[Place, PlaceWords]) -> None:
+        theme = self.theme
+        self.assignment = AssignmentModel(self)
+        self.choice = ExportChoice(Path.exists, self)
+        self.traces = Traces(theme)
+        live = Stage(theme)
+        self.home_page = HomePage(theme)
+        self.connect_page = ConnectPage(theme)
+        self.assign_page = AssignPage(theme, self.assignment, words)
+        self.calibration_page = CalibrationPage(theme, self.holds, words)
+        self.capture_page = CapturePage(theme, live, self.traces)
+        self.review_page = ReviewPage(theme, Playhead(self), AnglePlot(theme))
+        self.export_page = ExportPage(theme, self.choice)
+        self.settings_page = SettingsPage(theme)
+        self.diagnostics_page = DiagnosticsPage(theme)
+        self.pages = {
+            "connect": self.connect_page, "assign": self.assign_page, "calibrate": self.calibration_page,
+            "capture": self.capture_page, "review": self.review_page, "export": self.export_page,
+            "home": self.home_page, "settings": self.settings_page, "diagnostics": self.diagnostics_page,
+        }  # fmt: skip
+        self.window = MainWindow(theme, self.pages)
+        self.window.toast.keep_clear_of(self.capture_page.record)
+        first, looked_at = Stage(theme), Stage(theme)
+        self.home_page.set_stage(first)
+        self.review_page.set_stage(looked_at)
+        self.stages = Stages({"home": first, "capture": live, "review": looked_at}, self.show, self.settings)
+        self.connect_page.set_place_words(self._names)
+
+    def _build_presenters(self) -> None:
+        model, settings, notices, window = self.model, self.settings, self.notices, self.window
+        self.look = LookPresenter(self._application, self.theme, settings, window)
+        self.connect_ = ConnectPresenter(model, self.connect_page, model.library)
+        self.assign = AssignPresenter(model, self.assignment, self.assign_page)
+        self.calibrate = CalibratePresenter(model, self.holds, self.calibration_page, self.sound, self.show)
+        self.capture = CapturePresenter(
+            model, self.recorder, self.show, self.angles, self.capture_page, self.traces, settings, self.sound, notices
+        )
+        self.review = ReviewPresenter(model, self.review_page, self._names, settings, notices)
+        self.export = ExportPresenter(model, self.choice, self.export_page, settings)
+        self.home = HomePresenter(model, self.home_page, settings, notices)
+        self.people = PeoplePresenter(model, window, settings, notices)
+        self.diagnostics = DiagnosticsPresenter(model, self.diagnostics_page)
+        self._keys: dict[str, Keyed] = {
+            "connect": self.connect_, "assign": self.assign, "calibrate": self.calibrate, "capture": self.capture,
+            "review": self.review,
+        }  # fmt: skip
+        for presenter in self._keys.values():
+            window.keys.offer(presenter.keys)
+        window.keys.offer((*self.look.keys, *self.stages.keys, "export_again"))
+        self.preferences = PreferencesPresenter(settings, self.settings_page, window, self.sound)
+
+    def _wire(self) -> None:
+        window, model, recorder = self.window, self.model, self.recorder
+        window.page_requested.connect(self.go_to)
+        window.fix_requested.connect(self.go_to)
+        window.record_requested.connect(self.capture.press)
+        window.key_pressed.connect(self._on_key)
+        window.notice_acted.connect(self._on_acted)
+        window.vocabulary_changed.connect(self._on_vocabulary)
+        window.close_requested.connect(self._on_close)
+        window.close_confirmed.connect(self._on_close_confirmed)
+        recorder.close_asked.connect(window.ask_before_close)
+        recorder.close_ready.connect(window.close_now)
+        model.refused.connect(self.notices.refuse)
+        model.source_refused.connect(self._on_source_refused)
+        model.sensors_changed.connect(self._show_sensors)
+        model.setup_changed.connect(self._show_sensors)
+        self.capture.take_saved.connect(self._on_saved)
+        self.capture.review_wanted.connect(self._review)
+        self.capture.connect_wanted.connect(self._connect)
+        self.capture.bad_wanted.connect(self._on_bad)
+        self.home.connect_wanted.connect(self._on_own_sensors)
+        self.home.review_wanted.connect(self._review)
+        self.home.library_changed.connect(self.review.read_library)
+        self.review.library_read.connect(self._on_library)
+        self.review.export_wanted.connect(self._on_export)
+        self.export.takes_wanted.connect(self._on_takes_wanted)
+        self.preferences.library_changed.connect(self._on_library_moved)
+        self.holds.accepted.connect(self._on_calibrated)
+        self.settings.changed.connect(self._on_setting)
+        self.tick.ticked.connect(self.on_tick)
+
+    def on_tick(self, now: float) -> None:
+        """Let everything that shows something look at what there is; ``now`` is the clock of the samples, s."""
+        page = self.window.shown_page
+        self.model.tick(now)
+        self.stages.tick(now)
+        self.connect_.tick(now, shown=page == "connect")
+        self.assign.tick(now, shown=page == "assign")
+        self.calibrate.tick(now, shown=page == "calibrate")
+        self.capture.tick(now, shown=page == "capture")
+        self.review.tick(now, shown=page == "review")
+        self.diagnostics.tick(now, shown=page == "diagnostics")
+        self.window.tick(now)
+        if now - self._disk_at >= DISK_EVERY:
+            self._disk_at = now
+            self.model.work(self._seconds_of_disk, self._on_disk)
+        if now - self._at >= STRIP_EVERY:
+            self._at = now
+            self.window.show_state(self.show.readiness(self.capture.take_title(), self._disk_left))
+
+    def _seconds_of_disk(self) -> float | None:
+        folder = self.model.library
+        while not folder.exists() and folder != folder.parent:
+            folder = folder.parent
+        try:
+            return shutil.disk_usage(folder).free / TAKE_BYTES
+        except OSError:
+            return None
+
+    def _on_disk(self, left: float | None) -> None:
+        self._disk_left = left
+
+    def _on_key(self, action: str) -> None:
+        page = self.window.shown_page
+        presenter = self._keys.get(page)
+        if presenter is not None and action in presenter.keys and presenter.act(action):
+            return
+        if self.look.act(action) or self.stages.act(action, page):
+            return
+        if action == "cancel":
+            self.calibrate.act(action)
+            self.recorder.cancel()
+        elif action == "marker":
+            self.capture.act(action)
+        elif action == "export_again":
+            self._export_again()
+
+    def _export_again(self) -> None:
+        current = self.review_page.takes.current()
+        if self.window.shown_page == "review" and current is not None:
+            self.go_to("export")
+            self.export.again((current,))
+
+    def _on_acted(self, action: str) -> None:
+        if action == "open_last" and self._offered:
+            self.model.open(self._offered)
+
+    def _on_vocabulary(self, name: str) -> None:
+        self.settings.set("vocabulary", name)
+
+    def _on_setting(self, name: str) -> None:
+        if name == "vocabulary":
+            words = self._words()
+            self._names.update({place: said.name for place, said in words.items()})
+            self.assign_page.set_words(words)
+            self.calibration_page.set_words(words)
+            self.connect_page.set_place_words(self._names)
+
+    def _on_close(self) -> None:
+        if self.recorder.close(self.model.now()):
+            self.window.close_now()
+
+    def _on_close_confirmed(self) -> None:
+        self.recorder.stop_and_close(self.model.now())
+
+    def _on_source_refused(self, error: object) -> None:
+        if self.window.shown_page != "connect":
+            self.notices.refuse(error)  # type: ignore[arg-type]  # Signal(object)
+
+    def _show_sensors(self) -> None:
+        infos = self.model.infos
+        worn = self.model.setup.assignment.sensors
+        names = {sensor: self._names[place] for place, sensor in worn.items() if sensor in infos}
+        names |= {s: info.label or str(s) for s, info in infos.items() if s not in names}
+        self.traces.set_sensors(names)
+
+    def _on_saved(self, summary: TakeSummary) -> None:
+        self.review.put(summary)
+        self._show_last_takes()
+        self.people.read_library()
+
+    def _show_last_takes(self) -> None:
+        model = self.review_page.takes.model
+        self.capture.show_takes(model.newest())
+        self.connect_.show_takes(model.newest())
+
+    def _on_library(self, takes: tuple[TakeSummary, ...]) -> None:
+        self.home.show_library(takes)
+        self._show_last_takes()
+
+    def _on_library_moved(self) -> None:
+        self.model.library = library_folder(self.settings)
+        self.review.read_library()
+        self.people.read_library()
+
+    def _review(self, folder: Path) -> None:
+        self.go_to("review")
+        self.review.open_take(folder)
+
+    def _on_bad(self, folder: Path) -> None:
+        self.review.judge(folder, "bad")
+
+    def _connect(self) -> None:
+        self.go_to("connect")
+
+    def _on_own_sensors(self) -> None:
+        if self.model.source.startswith("synthetic"):
+            self.model.close_source()
+        self.go_to("connect")
+
+    def _on_export(self, takes: tuple[TakeSummary, ...]) -> None:
+        self.export.choose(takes)
+        self.go_to("export")
+
+    def _on_takes_wanted(self) -> None:
+        self.go_to("review")
+
+    def _on_calibrated(self, _: object) -> None:
+        self.go_to("capture")
