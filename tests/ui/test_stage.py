@@ -374,3 +374,26 @@ def test_a_pose_is_compared_by_identity():
 
     assert pose == same
     assert pose != StagePose(pose.world_from_segment, pose.joints, pose.measured)
+
+
+def test_a_floor_that_was_kept_looks_like_one_that_was_painted_and_goes_with_the_camera(qtbot):
+    widget = stage(qtbot)
+    widget.show_pose(standing())
+    painted = picture(widget)
+    kept, again = picture(widget), picture(widget)
+    widget._cameraman.orbit(40.0, 10.0)  # noqa: SLF001 (a drag without its events)
+    turned = picture(widget)
+
+    assert changed(painted, kept) == changed(painted, again) == 0
+    assert changed(painted, turned) > 1000
+    assert changed(turned, picture(widget)) == 0
+
+
+def test_a_path_between_two_places_beside_the_picture_is_seen_where_it_crosses_it(qtbot):
+    widget = stage(qtbot)
+    widget.view("front")
+    without = picture(widget)
+    widget.set_path(np.array([[0.0, -4.0], [0.0, 4.0], [0.0, 4.1]]))
+    _, xs = np.nonzero(np.abs(picture(widget) - without).max(axis=2) > 8)
+
+    assert len(np.unique(xs)) == 640

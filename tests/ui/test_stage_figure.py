@@ -14,6 +14,7 @@ from studio.ui.theme import DARK, LIGHT, contrast
 from studio.ui.views.stage.body_parts import Body, body_parts
 from studio.ui.views.stage.camera import standing as camera_of
 from studio.ui.views.stage.figure_painter import FigurePainter
+from studio.ui.views.stage.side_letters import hidden_letters
 from tests.ui.stage_poses import SKELETON, changed, picture, stage, standing, walking
 
 BODY = Body(SKELETON)
@@ -326,3 +327,20 @@ def test_screens_of_every_density_get_the_same_picture(qtbot, ratio):
     ]
 
     assert np.mean(apart) < 6
+
+
+def test_a_letter_does_not_lie_on_the_glove_of_the_other_side():
+    """From the right side: an L that lay on the right hand, which is nearer, would call it the left one."""
+    camera = camera_of("side", SKELETON.stature, 0.0, False, np.array([0.0, 0.0, 0.9]))
+    seen = FigurePainter(BODY).project(camera, standing("t", turned=0.5))
+    left, right = (
+        next(row for row, part in enumerate(BODY.parts) if (part.name, part.tone) == ("hand", side))
+        for side in ("left", "right")
+    )
+    on_left, on_right = seen.middles[[left]], seen.middles[[right]]
+    below = on_right + np.array([0.0, 300.0])
+
+    assert seen.order.index(right) > seen.order.index(left)
+    assert hidden_letters(BODY, seen, [left], on_right).tolist() == [True]
+    assert hidden_letters(BODY, seen, [left], below).tolist() == [False]
+    assert hidden_letters(BODY, seen, [right], on_left).tolist() == [False]

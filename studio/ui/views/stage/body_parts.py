@@ -19,6 +19,7 @@ Tone = Literal["limb", "joint", "left", "right", "face"]
 
 _MODEL = 1.75  # m; the stature that the numbers below belong to
 MOST_BALLS = 7
+ARM = ("upper_arm", "forearm", "hand")
 
 
 @dataclass(frozen=True)
@@ -240,6 +241,10 @@ class Body:
     def __init__(self, skeleton: Skeleton, parts: Sequence[Part] | None = None) -> None:
         self.parts = tuple(body_parts() if parts is None else parts)
         self.stature = skeleton.stature
+        self.limbs = np.array([_limb_of(part.place) for part in self.parts])
+        """(parts,): one number for all parts of an arm, of a leg, and of the trunk."""
+        self.sides = np.array([{"left": -1, "right": 1}.get(part.tone, 0) for part in self.parts])
+        """(parts,): -1 for the left glove and shoe, 1 for the right ones, else 0."""
         scale = skeleton.stature / _MODEL
         balls = [ball for part in self.parts for ball in part.balls]
         self._segments = np.array([ball.segment for ball in balls])
@@ -283,6 +288,13 @@ class Body:
         centres = joints[self._segments] + turned
         ends = np.stack([centres[self._upper].mean(axis=1), centres[self._lower].mean(axis=1)], axis=1)
         return centres[self._rows], ends
+
+
+def _limb_of(place: Place) -> int:
+    side, _, name = place.value.partition("_")
+    if not name:
+        return 0
+    return 1 + 2 * (side == "left") + (name in ARM)
 
 
 def _on_the_way(ball: Ball, skeleton: Skeleton) -> Array:

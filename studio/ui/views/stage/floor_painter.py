@@ -5,8 +5,8 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
-from PySide6.QtGui import QBrush, QColor, QLinearGradient, QPainter, QPen, QTransform
+from PySide6.QtCore import QLineF, QPoint, QPointF, QRect, QRectF, QSize, QSizeF, Qt
+from PySide6.QtGui import QBrush, QColor, QLinearGradient, QPainter, QPen, QPixmap, QTransform
 
 from studio.core import rotation
 from studio.core.body import Segment, Skeleton
@@ -23,20 +23,46 @@ FLAT = math.radians(80.0)  # rad; seen more steeply, the floor has no far end
 LOW = (Segment.LeftHand, Segment.RightHand, Segment.LeftLeg, Segment.RightLeg, Segment.Head)
 FAINTEST = 0.02  # of the shadow's darkness; less is not seen
 FLATTEST = 0.05  # of its width; the least height of a shadow on the picture
+AIR = 0.1  # of the picture; so far beyond its edge lines are still drawn
 SHADOW_HEIGHT = 0.35  # m; what is higher throws no contact shadow
 
 
 class FloorPainter:
-    """Pens and brushes of one palette."""
+    """Pens and brushes of one palette, and the floor as it was seen last."""
 
     def __init__(self, theme: Theme) -> None:
         tokens = theme.tokens
         ground = QColor(tokens.window)
+        self._ground = _ground(theme)
         self._line = mixed(ground, QColor(tokens.text), 0.24 if theme.is_dark else 0.22)
         self._path = QColor(tokens.accent)
         self._fading_line, self._fading_path = _fading(self._line), _fading(self._path)
 
-    def paint_grid(self, painter: QPainter, camera: Camera) -> None:
+        self._seen: tuple[Camera, QSize, float] | None = None
+        self._kept: QPixmap | None = None
+
+    def paint(self, painter: QPainter, camera: Camera, room: QSize) -> None:
+        """Paint ground and grid; while the camera stands, as a picture that was kept."""
+        ratio = painter.device().devicePixelRatio()
+        seen = (camera, room, ratio)
+        if seen != self._seen:
+            self._seen, self._kept = seen, None
+            self._paint_anew(painter, camera, room)
+            return
+        if self._kept is None:
+            self._kept = QPixmap((QSizeF(room) * ratio).toSize())
+            self._kept.setDevicePixelRatio(ratio)
+            inner = QPainter(self._kept)
+            inner.setRenderHints(painter.renderHints())
+            self._paint_anew(inner, camera, room)
+            inner.end()
+        painter.drawPixmap(0, 0, self._kept)
+
+    def _paint_anew(self, painter: QPainter, camera: Camera, room: QSize) -> None:
+        painter.fillRect(QRect(QPoint(), room), placed(self._ground, QTransform.fromScale(1.0, room.height())))
+        self._paint_grid(painter, camera)
+
+    def _paint_grid(self, painter: QPainter, camera: Camera) -> None:
         """Paint lines a metre apart, or more when the eye is far."""
         ends = camera.seen(_grid(camera))
         kept = _clipped(ends)
@@ -52,7 +78,7 @@ class FloorPainter:
         points = camera.project(np.column_stack([np.where(near[:, None], path, np.nan), np.zeros(len(path))]))
         painter.setPen(self._pen(camera, self._fading_path, self._path, 2.0))
         painter.setBrush(Qt.BrushStyle.NoBrush)
-        for run in _runs(points):
+        for run in _runs(_in_sight(points, camera)):
             painter.drawPolyline([QPointF(x, y) for x, y in run.tolist()])
 
     def paint_shadow(
@@ -89,9 +115,16 @@ class FloorPainter:
         at_target = camera.project(np.array([camera.target[0], camera.target[1], 0.0]))[1]
         if not math.isfinite(at_target) or at_target - top < 1.0:
             return QPen(plain, width)
-        pen = QPen(placed(fading, QTransform(1.0, 0.0, 0.0, float(at_target) - top, 0.0, top)), width)
-        pen.setJoinStyle(Qt.PenJoinStyle.RoundJoin)
-        return pen
+        return QPen(placed(fading, QTransform(1.0, 0.0, 0.0, float(at_target) - top, 0.0, top)), width)
+
+
+def _ground(theme: Theme) -> QBrush:
+    """Return the ground behind the figure, from y = 0 to 1: lighter where the floor is near, so that shadows show."""
+    window, raised = QColor(theme.tokens.window), QColor(theme.tokens.raised)
+    gradient = QLinearGradient(0.0, 0.0, 0.0, 1.0)
+    for place, share in ((0.0, 0.1), (0.28, 0.0), (0.85, 1.0), (1.0, 0.8)):
+        gradient.setColorAt(place, mixed(window, raised, share))
+    return QBrush(gradient)
 
 
 def _fading(colour: QColor) -> QBrush:
@@ -130,6 +163,17 @@ def _clipped(ends: Array) -> Array:
     share = np.clip((1.01 * NEAR - others[..., 2]) / np.where(run == 0.0, 1.0, run), 0.0, 1.0)
     cut = others + share[..., None] * (ends - others)
     return np.where((depth > NEAR)[..., None], ends, cut)
+
+
+def _in_sight(points: Array, camera: Camera) -> Array:
+    """Return ``points`` (n, 2), px, with NaN for those between which no line comes near the picture."""
+    size = np.array(camera.size)
+    air = AIR * size.max()
+    with np.errstate(invalid="ignore"):
+        low, high = np.minimum(points[:-1], points[1:]), np.maximum(points[:-1], points[1:])
+        crossing = ((high >= -air) & (low <= size + np.array([air, camera.top + air]))).all(axis=1)
+    kept = np.append(crossing, False) | np.append(False, crossing)
+    return np.where(kept[:, None], points, np.nan)
 
 
 def _runs(points: Array) -> Sequence[Array]:

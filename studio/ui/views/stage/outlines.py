@@ -65,14 +65,15 @@ def outlines(body: Body, camera: Camera, world_from_segment: Array, joints: Arra
     leads : (parts,), m; how much nearer a part counts where it is as deep as another
     """
     known = np.isfinite(np.concatenate([world_from_segment, joints], axis=1)).all(axis=1)
-    centres, ends = body.posed(
-        np.where(known[:, None], world_from_segment, rotation.IDENTITY), np.where(known[:, None], joints, 0.0)
-    )
-    seen_balls, seen_ends = camera.seen(centres), camera.seen(ends)
-    drawable = np.logical_and((seen_balls[..., 2] > NEAR).all(axis=1), body.whole(known))
+    if not known.all():
+        world_from_segment = np.where(known[:, None], world_from_segment, rotation.IDENTITY)
+        joints = np.where(known[:, None], joints, 0.0)
+    seen = camera.seen(np.concatenate(body.posed(world_from_segment, joints), axis=1))
+    drawable = np.logical_and((seen[..., 2] > NEAR).all(axis=1), body.whole(known))
     # what is not drawn gets a harmless place: nothing is projected from behind the eye
-    seen_balls[~drawable], seen_ends[~drawable] = (0.0, 0.0, 1.0), (0.0, 0.0, 1.0)
-    balls, axis = camera.on_picture(seen_balls), camera.on_picture(seen_ends)
+    seen[~drawable] = (0.0, 0.0, 1.0)
+    points = camera.on_picture(seen)
+    (balls, axis), (seen_balls, seen_ends) = (np.split(each, [-2], axis=1) for each in (points, seen))
     radii = body.radii * (camera.focal / seen_balls[..., 2])
     scale = camera.focal / seen_ends[..., 2].mean(axis=1)
     widths = body.end_widths * scale[:, None]

@@ -4,16 +4,17 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPixmap
 
-from studio.core.body import Place
 from studio.ui.theme import Theme
-from studio.ui.views.stage.body_parts import Part
+from studio.ui.views.stage.body_parts import Body
 from studio.ui.views.stage.outlines import EDGE, Outlines
 
+Array = NDArray[np.float64]
+
 LETTERED = ("hand", "toes")
-ARM = ("upper_arm", "forearm", "hand")
 SMALL_FIGURE = 160.0  # px; of a figure that is less high only the feet get letters
 OF_SMALL, OF_LARGE = 0.06, 0.028  # of the figure's height; a letter is between these, if it can one and a half captions
 LEAST = 16.0  # px
@@ -33,20 +34,23 @@ class SideLetters:
         self._theme = theme
         self._badges: dict[tuple[bool, int, Letters, float], QPixmap] = {}
 
-    def paint(self, painter: QPainter, parts: Sequence[Part], seen: Outlines, letters: Letters) -> None:
+    def paint(self, painter: QPainter, body: Body, seen: Outlines, letters: Letters) -> None:
         """Paint the letters of the hands and feet that are not behind the body or the other side's limbs."""
         rows = list(seen.order)
-        height = float(np.ptp(seen.edges[rows][..., 1])) if rows else 0.0
+        height = float(np.ptp(seen.edges[rows, :, 1])) if rows else 0.0
         usual = min(max(height * OF_SMALL, LEAST), self._theme.pixels("caption") * 1.5)
         size = round(max(usual, height * OF_LARGE))
         ratio = painter.device().devicePixelRatio()
         shown = LETTERED if height >= SMALL_FIGURE else LETTERED[1:]
-        lettered = [row for row in rows if parts[row].name in shown]
-        for row, is_hidden in zip(lettered, _hidden(parts, seen, lettered), strict=True):
-            if is_hidden:
-                continue
-            corner = _beyond(seen, row, 0.75 * size) - QPointF(size / 2, size / 2)
-            painter.drawPixmap(corner, self._badge(parts[row].tone == "left", size, letters, ratio))
+        lettered = [row for row in rows if body.parts[row].name in shown]
+        if not lettered:
+            return
+        places = _beyond(seen, lettered, 0.75 * size)
+        hidden = hidden_letters(body, seen, lettered, places).tolist()
+        for row, is_hidden, (x, y) in zip(lettered, hidden, (places - size / 2).tolist(), strict=True):
+            if not is_hidden:
+                badge = self._badge(body.parts[row].tone == "left", size, letters, ratio)
+                painter.drawPixmap(QPointF(x, y), badge)
 
     def _badge(self, is_left: bool, size: int, letters: Letters, ratio: float) -> QPixmap:
         """Return a letter on its ground; drawn once for each size."""
@@ -78,40 +82,31 @@ class SideLetters:
         return badge
 
 
-def _beyond(seen: Outlines, row: int, distance: float) -> QPointF:
-    """Return the point ``distance`` px beyond the lower end of a part."""
-    along, middle = seen.along[row], seen.middles[row]
-    reach = float(((seen.edges[row] - middle) @ along).max())
-    x, y = (middle + along * (reach + distance)).tolist()
-    return QPointF(x, y)
+def _beyond(seen: Outlines, rows: Sequence[int], distance: float) -> Array:
+    """Return the points ``distance`` px beyond the lower ends of parts, (rows, 2)."""
+    along, middle = seen.along[rows], seen.middles[rows]
+    reach = ((seen.edges[rows] - middle[:, None]) * along[:, None]).sum(axis=-1).max(axis=1)
+    return np.asarray(middle + along * (reach + distance)[:, None])
 
 
-def _hidden(parts: Sequence[Part], seen: Outlines, rows: Sequence[int]) -> list[bool]:
-    """Return for parts whether all four ends of each are behind nearer parts of other limbs."""
-    if not rows:
-        return []
-    others = list(seen.order)
-    turn = {row: place for place, row in enumerate(others)}
-    limbs = [_LIMBS[parts[other].place] for other in others]
-    may_hide = [[turn[row] < k and _LIMBS[parts[row].place] != limb for k, limb in enumerate(limbs)] for row in rows]
-    ends = seen.edges[list(rows), :: EDGE // 4][:, :, None]
-    upper, along = seen.axis[others, 0], seen.axis[others, 1] - seen.axis[others, 0]
-    from_upper = ends - upper
+def hidden_letters(body: Body, seen: Outlines, rows: Sequence[int], places: Array) -> NDArray[np.bool_]:
+    """Return for parts whether all four ends of each are behind nearer parts of other limbs, (rows,).
+
+    A letter whose place, (rows, 2), is on the other side's glove or shoe would name that one: it is hidden as well.
+    """
+    order = np.array(seen.order)
+    turn = np.empty(len(body.parts), np.intp)
+    turn[order] = np.arange(len(order))
+    nearer = turn[rows][:, None] < np.arange(len(order))
+    others = nearer & (body.limbs[rows][:, None] != body.limbs[order])
+    opposite = nearer & (body.sides[rows][:, None] * body.sides[order] < 0)
+    points = np.concatenate([seen.edges[rows, :: EDGE // 4], places[:, None]], axis=1)[:, :, None]
+    upper, along = seen.axis[order, 0], seen.axis[order, 1] - seen.axis[order, 0]
+    from_upper = points - upper
     share = (from_upper * along).sum(axis=-1) / np.maximum((along * along).sum(axis=-1), 1e-9)
     share = np.minimum(np.maximum(share, 0.0), 1.0)
     apart = from_upper - share[..., None] * along
-    width = seen.widths[others, 0] * (1.0 - share) + seen.widths[others, 1] * share
-    inside = ((apart * apart).sum(axis=-1) < width * width) & np.array(may_hide)[:, None]
-    hidden: list[bool] = inside.any(axis=2).all(axis=1).tolist()
-    return hidden
-
-
-def _limb(place: Place) -> str:
-    """Return one name for all places of an arm, of a leg, and of the trunk."""
-    side, _, name = place.value.partition("_")
-    if not name:
-        return "trunk"
-    return f"{side} {'arm' if name in ARM else 'leg'}"
-
-
-_LIMBS = {place: _limb(place) for place in Place}
+    width = seen.widths[order, 0] * (1.0 - share) + seen.widths[order, 1] * share
+    inside = (apart * apart).sum(axis=-1) < width * width
+    behind = (inside[:, :-1] & others[:, None]).any(axis=2).all(axis=1)
+    return np.asarray(behind | (inside[:, -1] & opposite).any(axis=1))

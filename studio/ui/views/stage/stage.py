@@ -6,17 +6,14 @@ import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import (
-    QBrush,
     QColor,
     QFontMetricsF,
     QKeyEvent,
-    QLinearGradient,
     QMouseEvent,
     QPainter,
     QPaintEvent,
     QPen,
     QResizeEvent,
-    QTransform,
     QWheelEvent,
 )
 from PySide6.QtWidgets import QWidget
@@ -30,7 +27,7 @@ from studio.ui.views.stage.cameraman import Cameraman, facing, has_place
 from studio.ui.views.stage.figure_painter import FigurePainter
 from studio.ui.views.stage.floor_painter import FloorPainter
 from studio.ui.views.stage.outlines import Outlines
-from studio.ui.views.stage.shading import Shading, mixed, placed
+from studio.ui.views.stage.shading import Shading
 from studio.ui.views.stage.side_letters import Letters, SideLetters
 from studio.ui.views.stage.silent_names import More, SilentNames
 from studio.ui.views.stage.walked_path import WalkedPath
@@ -110,7 +107,7 @@ class Stage(QWidget):
         self._shading = Shading(self._theme)
         self._floor = FloorPainter(self._theme)
         self._letters, self._names = SideLetters(self._theme), SilentNames(self._theme)
-        self._ground, self._font = _ground(self._theme), self._theme.font("body")
+        self._font = self._theme.font("body")
         self._metrics = QFontMetricsF(self._font)
         self._dirty = True
         self._frame()
@@ -199,8 +196,7 @@ class Stage(QWidget):
         """Paint."""
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        painter.fillRect(self.rect(), placed(self._ground, QTransform.fromScale(1.0, self.height())))
-        self._floor.paint_grid(painter, self.camera)
+        self._floor.paint(painter, self.camera, self.size())
         self._floor.paint_path(painter, self.camera, self._path.points)
         pose = self._pose
         seen = None if pose is None else self._figure.project(self.camera, pose)
@@ -271,14 +267,14 @@ class Stage(QWidget):
         self._floor.paint_shadow(painter, self.camera, *args)
         if self._ghost is not None:
             self._paint_ghost(painter, self._ghost)
-        parts = self._figure.body.parts
+        body = self._figure.body
         self._figure.paint(painter, self._shading, pose, seen)
-        self._letters.paint(painter, parts, seen, Letters(self.tr("L", "left"), self.tr("R", "right")))
+        self._letters.paint(painter, body, seen, Letters(self.tr("L", "left"), self.tr("R", "right")))
         self._paint_caption(painter, pose.caption)
         if pose.silent:
             room = QRectF(self.rect()).adjusted(GAP_WIDE, GAP_WIDE, -GAP_WIDE, -GAP_WIDE - self._below())
             more = More(self.tr("and {n} more"), self.tr("{n} sensors are silent"))
-            self._names.paint(painter, room, self.camera, self._skeleton.stature, parts, seen, pose, more)
+            self._names.paint(painter, room, self.camera, self._skeleton.stature, body.parts, seen, pose, more)
 
     def _paint_ghost(self, painter: QPainter, ghost: StagePose) -> None:
         self._ghost_figure.paint_ghost(painter, self._shading, self._ghost_figure.project(self.camera, ghost))
@@ -330,12 +326,3 @@ class Stage(QWidget):
     def _moment(self) -> float | None:
         """Return the time from which something may move: none before the first tick and with reduced motion."""
         return None if self._theme.reduced_motion else self._now
-
-
-def _ground(theme: Theme) -> QBrush:
-    """Return the ground behind the figure, from y = 0 to 1: lighter where the floor is near, so that shadows show."""
-    window, raised = QColor(theme.tokens.window), QColor(theme.tokens.raised)
-    gradient = QLinearGradient(0.0, 0.0, 0.0, 1.0)
-    for place, share in ((0.0, 0.1), (0.28, 0.0), (0.85, 1.0), (1.0, 0.8)):
-        gradient.setColorAt(place, mixed(window, raised, share))
-    return QBrush(gradient)
