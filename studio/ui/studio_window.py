@@ -168,7 +168,7 @@ class StudioWindow(QObject):
         model, settings, notices, window = self.model, self.settings, self.notices, self.window
         self.look = LookPresenter(self._application, self.theme, settings, window)
         self.connect_ = ConnectPresenter(model, self.connect_page, model.library)
-        self.assign = AssignPresenter(model, self.assignment, self.assign_page)
+        self.assign = AssignPresenter(model, self.assignment, self.assign_page, settings)
         self.calibrate = CalibratePresenter(model, self.holds, self.calibration_page, self.sound, self.show)
         self.capture = CapturePresenter(
             model, self.recorder, self.show, self.angles, self.capture_page, self.traces, settings, self.sound, notices

@@ -157,6 +157,10 @@ QPushButton[kind="quiet"]:pressed, QToolButton[kind="quiet"]:pressed { backgroun
 QPushButton[kind="quiet"]:checked, QToolButton[kind="quiet"]:checked { background-color: $selected; }
 QPushButton[kind="quiet"]:focus, QToolButton[kind="quiet"]:focus { border-color: $accent; }
 
+QPushButton[kind="line"] { background-color: transparent; border-color: transparent; text-align: left; padding: 0 8px; }
+QPushButton[kind="line"]:hover { background-color: $hover; }
+QPushButton[kind="line"]:focus { border-color: $accent; }
+
 QPushButton[kind="segment"], QToolButton[kind="segment"] {
     color: $muted; background-color: transparent; border-color: transparent; min-height: ${segment}px;
 }

@@ -10,6 +10,7 @@ from studio.ui.live_show import SILENT_AFTER
 from studio.ui.models.assignment_model import AssignmentModel, KnownSensor, SensorState
 from studio.ui.models.sensor_motion import shaken, speed_of
 from studio.ui.models.studio_model import StudioModel
+from studio.ui.settings import Settings
 from studio.ui.views.assign_page import AssignPage
 
 EVERY = 0.25  # s
@@ -23,12 +24,15 @@ class AssignPresenter(QObject):
 
     keys = ("undo", "redo")
 
-    def __init__(self, model: StudioModel, assignment: AssignmentModel, page: AssignPage) -> None:
+    def __init__(self, model: StudioModel, assignment: AssignmentModel, page: AssignPage, settings: Settings) -> None:
         super().__init__(page)
-        self._model, self._assignment, self._page = model, assignment, page
+        self._model, self._assignment, self._page, self._settings = model, assignment, page, settings
         self._at = -math.inf
         assignment.assignment_changed.connect(model.assign)
         page.stature_chosen.connect(model.set_stature)
+        page.map.facing_changed.connect(self._on_facing)
+        settings.changed.connect(self._on_setting)
+        self._on_setting("seen_from")
         model.setup_changed.connect(self._on_setup)
         model.source_changed.connect(self._on_setup)
 
@@ -56,6 +60,13 @@ class AssignPresenter(QObject):
             moved = shaken({sensor: speed_of(window) for sensor, window in windows.items()})
             if moved is not None:
                 self._page.moved(moved)
+
+    def _on_facing(self, facing: bool) -> None:
+        self._settings.set("seen_from", "front" if facing else "behind")
+
+    def _on_setting(self, name: str) -> None:
+        if name == "seen_from":
+            self._page.map.set_facing(facing=self._settings.values.seen_from == "front")
 
     def _on_setup(self) -> None:
         setup = self._model.setup

@@ -116,7 +116,7 @@ class CapturePresenter(QObject):
         """Show the last takes, newest first."""
         lost = self.tr("{percent} lost")
         rows = [
-            TakenTake(t.name, length(t.duration_s), lost.format(percent=_percent(t.lost)), str(t.folder))
+            TakenTake(_numbered(t), length(t.duration_s), lost.format(percent=_percent(t.lost)), str(t.folder))
             for t in takes
             if t.refusal is None
         ]
@@ -217,6 +217,11 @@ class CapturePresenter(QObject):
     def _offer_angles(self) -> None:
         names = self._angles.names
         self._page.offer_angles(names, self._angles.chosen, {name: in_words(name) for name in names})
+
+
+def _numbered(take: TakeSummary) -> str:
+    number = take.folder.name.split("_")[0].removeprefix("take-")
+    return f"{number} {take.name}"
 
 
 def _percent(share: float) -> str:

@@ -103,6 +103,8 @@ class ConnectPresenter(QObject):
         places: Mapping[SensorId, Place] = {s: place for place, s in model.setup.assignment.sensors.items()}
         self._page.show_sensors(model.health, infos, places, now)
         self._page.show_rest(self.rest)
+        if model.alignment is not None:
+            self._page.show_worn()
         self._page.show_motion(model.buffer.snapshot(tuple(infos), MOTION_SECONDS), now)
 
     def _watch_rest(self) -> None:

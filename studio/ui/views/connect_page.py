@@ -164,6 +164,12 @@ class ConnectPage(QWidget):
         self._rest_count.setVisible(not all_done)
         set_look(self._rest_words, tone="good" if all_done else "")
 
+    def show_worn(self) -> None:
+        """The body is calibrated: the tags are worn, and nobody is to lay them down."""
+        self._rest_words.setText(self.tr("✔ The tags are worn and the body is calibrated."))
+        self._rest_count.hide()
+        set_look(self._rest_words, tone="good")
+
     def show_motion(self, windows: Mapping[SensorId, Window], now: float) -> None:
         """Light up the tag that somebody shakes, four times a second; the last half second is enough."""
         moved = shaken({sensor: speed_of(window) for sensor, window in windows.items()})

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
+from PySide6.QtGui import QShowEvent
 from PySide6.QtWidgets import (
     QButtonGroup,
     QCheckBox,
@@ -103,12 +104,20 @@ class ExportPage(QWidget):
         self.takes.setFixedWidth(round(TAKES_WIDTH * min(max(scale, 1.0), WIDEST_TEXT)))
         for part in (self._form, self.result):
             part.setMaximumWidth(round(FORM_WIDTH * max(scale, 1.0)))
+        self._level_cards()
+        for part in (self.takes, self.result):
+            part.restyle()
+
+    def showEvent(self, event: QShowEvent) -> None:  # noqa: N802 (Qt's name)
+        """Make the cards as high as the fonts need, which are known now."""
+        super().showEvent(event)
+        self._level_cards()
+
+    def _level_cards(self) -> None:
         tallest = max(card.lines_height() for card in self.cards.values())
         for card in self.cards.values():
             card.setMinimumHeight(tallest)
             card.updateGeometry()
-        for part in (self.takes, self.result):
-            part.restyle()
 
     def _formats(self) -> dict[str, tuple[str, str]]:
         """Return title and text of each card."""

@@ -72,6 +72,10 @@ class SourceChoice(QWidget):
         if kind not in KINDS:
             return
         box = self._boxes()[KINDS.index(kind)]
+        script = source.partition("?")[0]
+        row = next((r for r in range(self.scripts.count()) if self._script_at(r) == script), -1)
+        if kind == "synthetic" and row >= 0:
+            self.scripts.setItemData(row, source)  # the same person, with the options that came with it
         if box.findData(source) < 0:
             box.insertItem(0, port_of(source), source)
             box.setEnabled(True)
@@ -94,6 +98,9 @@ class SourceChoice(QWidget):
     def restyle(self) -> None:
         """Take over colours and text size."""
         self._stack.setMaximumWidth(round(FORM_WIDTH * max(self._theme.text_scale, 1.0)))
+
+    def _script_at(self, row: int) -> str:
+        return str(self.scripts.itemData(row)).partition("?")[0]
 
     def _boxes(self) -> tuple[QComboBox, QComboBox, QComboBox]:
         return self.ports, self.scripts, self.takes
