@@ -154,8 +154,8 @@ class Take:
 
     def duration(self) -> float:
         """Return the time from the first to the last kept sample, s."""
-        ends = [float(stream.time[-1]) for stream in self.streams if len(stream)]
-        return max(ends, default=0.0)
+        # The last to arrive is not always the last that was measured.
+        return max([0.0, *(float(stream.time.max()) for stream in self.streams if len(stream))])
 
     def poses(self) -> tuple[Mark, ...]:
         """Return the marks of held poses in the order of time."""

@@ -14,9 +14,10 @@ from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 from mcap.records import Attachment, Channel, Header, Metadata
 
-from studio.core.errors import NotATake, TakeUnsafe, WrittenByNewerStudio
+from studio.core.errors import NotATake, SetupError, TakeUnsafe, WrittenByNewerStudio
 from studio.storage.blocks import CHUNK_HEAD, head_is_whole, parse_head
-from studio.storage.facts import NOT_JSON, Identity, from_json
+from studio.storage.facts import NOT_JSON, Identity, cleaned_identity, from_json
+from studio.storage.limits import LARGEST_NUMBER, setup_fault
 from studio.storage.profile import (
     BLOCK_HEAD,
     BLOCK_HEAD_SIZE,
@@ -173,7 +174,17 @@ class BlockReader:
         if profile != PROFILE:
             raise WrittenByNewerStudio(str(self._path), profile[:64], PROFILE)
         if "take" in facts:
-            self.identity = from_json(facts["take"], Identity)
+            self.identity = cleaned_identity(self._believed(facts["take"]))
+
+    def _believed(self, text: str) -> Identity:
+        try:
+            identity = from_json(text, Identity)
+        except SetupError as error:  # two sensors on one place
+            raise TakeUnsafe(str(self._path), "its setup contradicts itself") from error
+        fault = setup_fault(identity.setup) or ("" if abs(identity.anchor.monotonic) <= LARGEST_NUMBER else "monotonic")
+        if fault:
+            raise TakeUnsafe(str(self._path), f"{fault} is not possible")
+        return identity
 
     def _count_missing(self, number: int) -> None:
         self.damaged += number - self._number - 1

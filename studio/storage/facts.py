@@ -1,10 +1,10 @@
 """The take's small facts as JSON: setup, sensors, marks and events."""
 
-import hashlib
 import math
 import unicodedata
 from collections.abc import Mapping
 from dataclasses import replace
+from itertools import islice
 from typing import Any, TypeVar
 
 import msgspec
@@ -12,10 +12,12 @@ import numpy as np
 
 from studio.core.sample import SensorInfo
 from studio.core.take import Mark, Setup
+from studio.storage.limits import LONGEST_LABEL, is_plausible_correction, plausible_utc
 
 T = TypeVar("T")
 
-TEXT_LIMIT = 64  # characters of a text that came from a sensor or a stranger's file
+TEXT_LIMIT = 64  # characters of a text that came from a sensor
+FACTS_LIMIT = 64  # of a sensor, and versions of a take
 
 NOT_JSON = (msgspec.DecodeError, UnicodeDecodeError, RecursionError)
 """What reading damaged or hostile JSON raises."""
@@ -48,7 +50,6 @@ class Identity(msgspec.Struct, frozen=True):
     setup: Setup
     versions: dict[str, str]
     anchor: Anchor
-    setup_sha256: str
 
 
 class SensorRecord(msgspec.Struct, frozen=True):
@@ -62,9 +63,8 @@ class SensorRecord(msgspec.Struct, frozen=True):
 def identity(
     name: str, person: str, source: str, setup: Setup, versions: Mapping[str, str], anchor: Anchor
 ) -> Identity:
-    """Return the identity with the digest of its setup."""
-    digest = hashlib.sha256(to_json(setup)).hexdigest()
-    return Identity(name, person, source, setup, dict(versions), anchor, digest)
+    """Return the identity of a take; ``versions`` are copied."""
+    return Identity(name, person, source, setup, dict(versions), anchor)
 
 
 def to_json(value: object) -> bytes:
@@ -96,7 +96,8 @@ def sensor_event(info: SensorInfo, received: float) -> Event:
 def event_mark(event: Event, zero: float) -> Mark:
     """Return the mark an event keeps, in take time."""
     mark = msgspec.convert(event.facts, Mark)
-    return replace(mark, time=mark.time - zero, end=mark.end - zero, label=clean(mark.label), kind=clean(mark.kind))
+    kind, label = harmless(mark.kind), harmless(mark.label)
+    return replace(mark, time=mark.time - zero, end=mark.end - zero, kind=kind, label=label)
 
 
 def event_sensor(event: Event) -> SensorInfo:
@@ -105,12 +106,32 @@ def event_sensor(event: Event) -> SensorInfo:
 
 
 def cleaned(info: SensorInfo) -> SensorInfo:
-    """Return what is known of a sensor with harmless texts."""
+    """Return what is known of a sensor with harmless texts, and without a correction that cannot be."""
     facts = {
         clean(key)[:TEXT_LIMIT]: clean(value)[:TEXT_LIMIT] if isinstance(value, str) else value
-        for key, value in info.facts.items()
+        for key, value in islice(info.facts.items(), FACTS_LIMIT)
     }
-    return replace(info, label=clean(info.label)[:TEXT_LIMIT], facts=facts)
+    correction = info.correction
+    if correction is not None and not is_plausible_correction(correction):
+        correction = None  # as of a tag that did not tell
+    return replace(info, label=clean(info.label)[:TEXT_LIMIT], correction=correction, facts=facts)
+
+
+def cleaned_identity(identity: Identity) -> Identity:
+    """Return what a take says about itself with harmless texts."""
+    return msgspec.structs.replace(
+        identity,
+        name=harmless(identity.name),
+        person=harmless(identity.person),
+        source=harmless(identity.source),
+        versions={harmless(key): harmless(value) for key, value in islice(identity.versions.items(), FACTS_LIMIT)},
+        anchor=msgspec.structs.replace(identity.anchor, utc=plausible_utc(identity.anchor.utc)),
+    )
+
+
+def harmless(text: str) -> str:
+    """Return a stranger's text without control characters, and not longer than a line."""
+    return clean(text)[:LONGEST_LABEL]
 
 
 def clean(text: str) -> str:

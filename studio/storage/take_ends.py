@@ -16,11 +16,10 @@ from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 from mcap.records import AttachmentIndex, Channel, Statistics, SummaryOffset
-from numpy.typing import NDArray
 
 from studio.core.errors import NotATake
 from studio.storage.block_reader import BlockReader, Messages
-from studio.storage.facts import NOT_JSON, Identity, SensorRecord, from_json
+from studio.storage.facts import Identity, SensorRecord
 from studio.storage.profile import (
     EVENT_TOPIC,
     IMU_TOPIC,
@@ -30,7 +29,8 @@ from studio.storage.profile import (
     RECORD_HEAD_SIZE,
     SAMPLE_DTYPE,
 )
-from studio.storage.take_reader import sample_rows
+from studio.storage.sample_table import Rows, sample_rows
+from studio.storage.take_content import sensor_record
 
 FIRST_CHUNKS = 64  # among these are the first samples or there are none: a block of 0.1 s has two or three chunks
 WINDOWS = (1 << 16, 1 << 20, 2 * MAX_BLOCK)  # bytes; the first holds four blocks of 15 tags, the last any block
@@ -46,8 +46,6 @@ _NOT_MCAP = (
     OSError,
 )  # OSError: a place no file has
 _RECOVERED = b'"kind":"recovered"'
-
-Rows = NDArray[np.void]
 
 
 @dataclass(frozen=True)
@@ -98,17 +96,16 @@ def read_ends(file: Path, stream: BinaryIO) -> Ends:
         window = _read(stream, max(closing.data_end - WINDOWS[0], 0), closing.data_end)
         recovered |= _tells_recovered(_chunks(window, file, channels), channels)
     counts = None if closing is None else closing.counts
-    return Ends(head.identity, _sensors(channels), first, last, counts, recovered)
+    return Ends(head.identity, _sensors(channels, file), first, last, counts, recovered)
 
 
-def _sensors(channels: Mapping[int, Channel]) -> dict[int, SensorRecord]:
+def _sensors(channels: Mapping[int, Channel], file: Path) -> dict[int, SensorRecord]:
     records: dict[int, SensorRecord] = {}
     for number, channel in channels.items():
         if channel.topic.startswith(IMU_TOPIC):
-            try:
-                records[number] = from_json(channel.metadata.get("sensor", ""), SensorRecord)
-            except NOT_JSON:
-                continue
+            record = sensor_record(channel, file)
+            if record is not None:
+                records[number] = record
     return records
 
 

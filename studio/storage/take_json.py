@@ -10,7 +10,9 @@ import msgspec
 from studio.core.errors import WrittenByNewerStudio
 from studio.core.take import Mark, Setup, Take
 from studio.storage import documents
+from studio.storage.facts import harmless
 from studio.storage.filesystem import FILES, FileSystem
+from studio.storage.limits import LONGEST_LABEL, LONGEST_NOTES, is_plausible_mark, setup_fault
 
 TAKE_JSON: Final = "take.json"
 SCHEMA: Final = 1
@@ -58,7 +60,7 @@ def load_document(folder: Path, recorded_name: str, *, repair: bool) -> tuple[Ta
         newer studio is left alone
     """
     file = folder / TAKE_JSON
-    document, state = documents.load(file, TakeDocument, SCHEMA)
+    document, state = _load(file)
     if document is not None:
         return document, state
     document = TakeDocument(name=recorded_name)
@@ -73,12 +75,26 @@ def load_document(folder: Path, recorded_name: str, *, repair: bool) -> tuple[Ta
 def save_document(folder: Path, document: TakeDocument, filesystem: FileSystem = FILES) -> None:
     """Write ``take.json``; WrittenByNewerStudio rather than lose what a newer studio wrote there."""
     file = folder / TAKE_JSON
-    _, state = documents.load(file, TakeDocument, SCHEMA)
+    _, state = _load(file)
     if state == "newer":
         raise WrittenByNewerStudio(str(file), "take.json", f"schema {SCHEMA}")
     if state == "damaged":
         documents.set_aside(file)
     documents.save(file, document, filesystem)
+
+
+def _load(file: Path) -> tuple[TakeDocument | None, documents.State]:
+    """Read a document; one that says what cannot be counts as damaged, because it may come from a stranger."""
+    document, state = documents.load(file, TakeDocument, SCHEMA)
+    if document is None:
+        return None, state
+    if (
+        len(document.notes) > LONGEST_NOTES
+        or not all(is_plausible_mark(mark) and len(mark.label) <= LONGEST_LABEL for mark in document.marks)
+        or (document.setup is not None and setup_fault(document.setup))
+    ):
+        return None, "damaged"
+    return msgspec.structs.replace(document, name=harmless(document.name)), state
 
 
 def document_schema() -> dict[str, Any]:

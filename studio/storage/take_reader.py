@@ -3,48 +3,26 @@
 import math
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
 from pathlib import Path
 from struct import Struct
 
 import numpy as np
-from numpy.typing import NDArray
 
 from studio.core.errors import Damaged, NotATake, TakeUnsafe
-from studio.core.sample import SensorId, SensorInfo, Stream
-from studio.core.take import Mark, Take
-from studio.storage.block_reader import BlockReader, Messages
+from studio.core.sample import SensorInfo, Stream
+from studio.core.take import Take
+from studio.storage.block_reader import BlockReader
 from studio.storage.documents import State
-from studio.storage.facts import (
-    NOT_JSON,
-    Anchor,
-    Event,
-    SensorRecord,
-    clean,
-    cleaned,
-    event_mark,
-    event_sensor,
-    from_json,
-)
-from studio.storage.profile import (
-    EVENT_TOPIC,
-    IMU_TOPIC,
-    MAX_SAMPLES,
-    MESSAGE,
-    MESSAGE_HEAD_SIZE,
-    PART_FILE,
-    RAW_TOPIC,
-    RECORD_HEAD_SIZE,
-    SAMPLE_DTYPE,
-    SAMPLE_LENGTH,
-    TAKE_FILE,
-)
+from studio.storage.facts import Anchor, Event, Identity
+from studio.storage.limits import frames_fault, nominal_frame
+from studio.storage.profile import IMU_TOPIC, PART_FILE, RAW_TOPIC, TAKE_FILE
+from studio.storage.sample_table import Rows
+from studio.storage.take_content import TakeContent, bodies, sensor_record
 from studio.storage.take_json import load_document
 
-MAX_EVENTS = 1_000_000  # a marker every 40 ms for 12 h
 _RAW = Struct("<qI")
-_LENGTH = Struct("<Q")
 
 
 @dataclass(frozen=True)
@@ -84,13 +62,14 @@ def read_take(path: Path) -> tuple[Take, ReadReport]:
         Damaged only when nothing can be used: a take with holes is read, and the report tells.
     """
     with _opened(path) as (reader, file):
-        content = _collect(reader, file)
-    if reader.identity is None and not content.zeros:
+        content = TakeContent(reader, file)
+    if reader.identity is None and not content.infos:
         raise Damaged(str(file), 0.0)
-    zero = next(iter(content.zeros.values()), reader.identity.anchor.monotonic if reader.identity else 0.0)
-    infos = content.infos | {info.sensor: info for info in content.told if info.sensor in content.infos}
-    streams = tuple(_stream(infos[sensor], rows, zero) for sensor, rows in content.rows.items())
-    take = _take(reader, streams, content.marks(zero), zero)
+    streams = tuple(_stream(info, content.take_rows(sensor), content.zero) for sensor, info in content.infos.items())
+    fault = frames_fault(streams)
+    if fault:
+        raise TakeUnsafe(str(file), f"{fault} of the samples leaves far more out than it tells")
+    take = _take(reader.identity, streams, content)
     # Beside a single file that somebody was sent there may be anything.
     document, state = load_document(file.parent, take.name, repair=path.is_dir())
     report = ReadReport(
@@ -99,7 +78,7 @@ def read_take(path: Path) -> tuple[Take, ReadReport]:
         chunks=reader.chunks,
         damaged=reader.damaged + content.unusable,
         samples=sum(map(len, streams)),
-        until_s=max((float(stream.time[-1]) for stream in streams if len(stream)), default=0.0),
+        until_s=take.duration(),
         document=state,
     )
     return document.applied(take), report
@@ -113,7 +92,7 @@ def read_raw(path: Path) -> Iterator[tuple[str, float, bytes]]:
             channel = reader.channels.get(messages.channel)
             if channel is None or not channel.topic.startswith(RAW_TOPIC):
                 continue
-            for body in _bodies(messages):
+            for body in bodies(messages):
                 for received, data in _pieces(body):
                     yield channel.topic.removeprefix(RAW_TOPIC), received - zero, data
 
@@ -121,9 +100,8 @@ def read_raw(path: Path) -> Iterator[tuple[str, float, bytes]]:
 def read_events(path: Path) -> list[Event]:
     """Return everything that was noted while recording, in order, in take time."""
     with _opened(path) as (reader, file):
-        content = _collect(reader, file)
-    zero = next(iter(content.zeros.values()), 0.0)
-    return [Event(event.kind, event.received - zero, event.facts) for event in content.events]
+        content = TakeContent(reader, file)
+    return [Event(event.kind, event.received - content.zero, event.facts) for event in content.events]
 
 
 def read_attachment(path: Path, name: str) -> bytes | None:
@@ -149,22 +127,10 @@ def take_zero(path: Path) -> float:
     with _opened(path) as (reader, _):
         for _ in reader.messages():
             for channel in reader.channels.values():
-                if channel.topic.startswith(IMU_TOPIC):
-                    try:
-                        return from_json(channel.metadata.get("sensor", ""), SensorRecord).zero_s
-                    except NOT_JSON:
-                        continue
+                record = sensor_record(channel, path) if channel.topic.startswith(IMU_TOPIC) else None
+                if record is not None:
+                    return record.zero_s
     return 0.0
-
-
-def sample_rows(messages: Messages) -> NDArray[np.void] | None:
-    """Return the messages of a chunk of sensors as rows, None when they are something else."""
-    if len(messages.data) % SAMPLE_DTYPE.itemsize:
-        return None
-    rows = np.frombuffer(messages.data, SAMPLE_DTYPE)
-    if not ((rows["opcode"] == MESSAGE) & (rows["length"] == SAMPLE_LENGTH)).all():
-        return None
-    return rows
 
 
 def started_at(anchor: Anchor, zero: float) -> str:
@@ -178,114 +144,15 @@ def started_at(anchor: Anchor, zero: float) -> str:
         return ""
 
 
-class _Content:
-    """What the chunks of a take hold, sorted by what they are."""
-
-    def __init__(self, file: Path) -> None:
-        self.infos: dict[SensorId, SensorInfo] = {}
-        self.zeros: dict[SensorId, float] = {}
-        self.rows: dict[SensorId, NDArray[np.void]] = {}
-        self.events: list[Event] = []
-        self.told: list[SensorInfo] = []
-        self.unusable = 0
-        self._file = file
-
-    def add_sensors(self, reader: BlockReader, chunks: list[Messages]) -> None:
-        """Sort the rows of all chunks by sensor."""
-        tables = [rows for rows in map(sample_rows, chunks) if rows is not None]
-        self.unusable += len(chunks) - len(tables)
-        table = np.concatenate(tables) if tables else np.empty(0, SAMPLE_DTYPE)
-        used = 0
-        for channel in reader.channels.values():
-            if not channel.topic.startswith(IMU_TOPIC):
-                continue
-            rows = table[table["channel"] == channel.id]
-            used += len(rows)
-            if (np.diff(rows["sequence"].astype(np.int64)) < 0).any():
-                rows = rows[np.argsort(rows["sequence"], kind="stable")]
-            self._add_sensor(channel.topic.removeprefix(IMU_TOPIC), channel.metadata, rows)
-        self.unusable += len(table) - used
-
-    def add_events(self, messages: Messages) -> None:
-        """Read the events of a chunk."""
-        for body in _bodies(messages):
-            try:
-                event = from_json(body, Event)
-            except NOT_JSON:
-                self.unusable += 1
-                continue
-            self.events.append(event)
-            if event.kind == "sensor":
-                self._add_told(event)
-        if len(self.events) > MAX_EVENTS:
-            raise TakeUnsafe(str(self._file), f"more than {MAX_EVENTS} events")
-
-    def marks(self, zero: float) -> tuple[Mark, ...]:
-        """Return the marks among the events."""
-        marks = []
-        for event in self.events:
-            if event.kind == "mark":
-                try:
-                    marks.append(event_mark(event, zero))
-                except NOT_JSON:
-                    self.unusable += 1
-        return tuple(marks)
-
-    def _add_told(self, event: Event) -> None:
-        try:
-            self.told.append(event_sensor(event))
-        except NOT_JSON:
-            self.unusable += 1
-
-    def _add_sensor(self, name: str, metadata: dict[str, str], rows: NDArray[np.void]) -> None:
-        try:
-            record = from_json(metadata.get("sensor", ""), SensorRecord)
-        except NOT_JSON:
-            self.unusable += max(len(rows), 1)
-            return
-        if record.info.sensor != name or clean(name) != name or name in self.infos:
-            raise TakeUnsafe(str(self._file), "a channel and its sensor have different names")
-        sensor = SensorId(name)
-        self.infos[sensor] = cleaned(record.info)
-        self.zeros[sensor] = record.zero_s
-        self.rows[sensor] = rows
-
-
-def _collect(reader: BlockReader, file: Path) -> _Content:
-    content = _Content(file)
-    sensors: list[Messages] = []
-    unknown: list[Messages] = []
-    samples = 0
-    for messages in reader.messages():
-        channel = reader.channels.get(messages.channel)
-        if channel is None:
-            unknown.append(messages)
-        elif channel.topic == EVENT_TOPIC:
-            content.add_events(messages)
-        elif channel.topic.startswith(IMU_TOPIC):
-            sensors.append(messages)
-            samples += len(messages.data) // SAMPLE_DTYPE.itemsize
-        if samples > MAX_SAMPLES:
-            raise TakeUnsafe(str(file), f"more than {MAX_SAMPLES} samples")
-    # Where the start is damaged, the channels are known only from their repetition further on.
-    known = [m for m in unknown if m.channel in reader.channels]
-    content.unusable += len(unknown) - len(known)
-    for messages in known:
-        if reader.channels[messages.channel].topic == EVENT_TOPIC:
-            content.add_events(messages)
-    early = [m for m in known if reader.channels[m.channel].topic.startswith(IMU_TOPIC)]
-    content.add_sensors(reader, early + sensors)
-    return content
-
-
-def _stream(info: SensorInfo, rows: NDArray[np.void], zero: float) -> Stream:
+def _stream(info: SensorInfo, rows: Rows, zero: float) -> Stream:
+    time = rows["time"] - zero
     return Stream(
-        info=info,
+        info=replace(info, frame_s=nominal_frame(info, time)),
         arrival=rows["sequence"].astype(np.int64),
         epoch=rows["epoch"].astype(np.int32),
         frame=rows["frame"].astype(np.int64),
         device_time=rows["device_time"].astype(np.float64),
-        time=rows["time"] - zero,
+        time=time,
         received=rows["received"] - zero,
         orientation=rows["orientation"].astype(np.float64),
         rate=rows["rate"].astype(np.float64),
@@ -297,27 +164,19 @@ def _stream(info: SensorInfo, rows: NDArray[np.void], zero: float) -> Stream:
     )
 
 
-def _take(reader: BlockReader, streams: tuple[Stream, ...], marks: tuple[Mark, ...], zero: float) -> Take:
-    known = reader.identity
+def _take(known: Identity | None, streams: tuple[Stream, ...], content: TakeContent) -> Take:
     if known is None:
-        return Take("", "", "", "", streams, marks)
+        return Take("", "", "", "", streams, content.marks)
     return Take(
         name=known.name,
         person=known.person,
         source=known.source,
-        started=started_at(known.anchor, zero),
+        started=started_at(known.anchor, content.zero),
         streams=streams,
-        marks=marks,
+        marks=content.marks,
         setup=known.setup,
         versions=known.versions,
     )
-
-
-def _bodies(messages: Messages) -> Iterator[bytes]:
-    (length,) = _LENGTH.unpack_from(messages.data, 1)
-    stride = RECORD_HEAD_SIZE + length
-    for start in range(0, len(messages.data), stride):
-        yield messages.data[start + MESSAGE_HEAD_SIZE : start + stride]
 
 
 def _pieces(body: bytes) -> Iterator[tuple[float, bytes]]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from studio.core.body import Place
 from studio.core.errors import FolderNotWritable, NotATake, TakeFileError
-from studio.storage.facts import clean
+from studio.storage.limits import LONGEST_TAKE
 from studio.storage.session_folder import list_takes
 from studio.storage.take_ends import Ends, read_ends
 from studio.storage.take_json import Verdict, load_document, save_document
@@ -79,7 +79,7 @@ def summarise(folder: Path) -> TakeSummary:
     recorded = _recorded(bare, ends)
     document, _ = load_document(folder, recorded.name, repair=False)
     places = recorded.places if document.setup is None else document.setup.assignment.places()
-    return replace(recorded, name=clean(document.name), notes=document.notes, verdict=document.verdict, places=places)
+    return replace(recorded, name=document.name, notes=document.notes, verdict=document.verdict, places=places)
 
 
 def keep_summary(summary: TakeSummary) -> None:
@@ -99,8 +99,9 @@ def keep_summary(summary: TakeSummary) -> None:
 
 def _recorded(bare: TakeSummary, ends: Ends) -> TakeSummary:
     zero = next((record.zero_s for record in ends.sensors.values()), math.nan)
-    times = ends.last["time"][np.isfinite(ends.last["time"])]
-    duration = max(float(times.max()) - zero, 0.0) if len(times) and math.isfinite(zero) else 0.0
+    times = ends.last["time"] - zero
+    times = times[np.abs(times) <= LONGEST_TAKE]
+    duration = max(float(times.max()), 0.0) if len(times) else 0.0
     if ends.counts is not None:
         samples = sum(ends.counts.get(channel, 0) for channel in ends.sensors)
     else:  # messages of sensors carry their position among all samples of the take
@@ -110,8 +111,8 @@ def _recorded(bare: TakeSummary, ends: Ends) -> TakeSummary:
     frames = [record.info.frame_s for record in ends.sensors.values() if record.info.frame_s > 0]
     return replace(
         bare,
-        person=clean(known.person) or bare.person if known else bare.person,
-        name=clean(known.name) if known else bare.name,
+        person=known.person or bare.person if known else bare.person,
+        name=known.name if known else bare.name,
         started=started_at(known.anchor, zero) if known else "",
         duration_s=duration,
         samples=samples,

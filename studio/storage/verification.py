@@ -11,7 +11,7 @@ from studio.core.errors import VerificationFailed
 from studio.storage.block_reader import BlockReader
 from studio.storage.blocks import message_heads
 from studio.storage.ledger import Ledger
-from studio.storage.take_reader import sample_rows
+from studio.storage.sample_table import sample_rows
 
 
 def verify(file: Path, written: Ledger, imu: Set[int]) -> float:

@@ -152,7 +152,7 @@ def test_a_sample_of_a_sensor_nobody_announced_is_kept(tmp_path: Path) -> None:
     take, report = read_take(writer.stop().result(SECONDS).folder)
 
     assert report.samples == 1
-    assert take.stream(TAGS[4]).info == SensorInfo(TAGS[4], 0.0)
+    assert take.stream(TAGS[4]).info == SensorInfo(TAGS[4], 0.02)  # the frame of the wire protocol
 
 
 def test_marks_and_events_come_back_in_take_time(tmp_path: Path) -> None:
@@ -230,16 +230,28 @@ def test_a_take_without_a_person_goes_where_nobody_is_and_stays_without(tmp_path
     assert read_take(folder)[0].person == ""
 
 
-def test_numbers_that_are_none_are_kept_and_do_not_hurt(tmp_path: Path) -> None:
+def test_a_frame_nobody_told_is_the_usual_step_of_the_samples(tmp_path: Path) -> None:
+    writer = start_writing(tmp_path, tags=0)
+    for frame in (0, 1, 2, 7, 8):
+        writer.sample(sample(TAGS[4], frame))
+
+    take, _ = read_take(writer.stop().result(SECONDS).folder)
+
+    assert take.stream(TAGS[4]).info.frame_s == pytest.approx(1 / RATE)
+
+
+def test_a_sample_without_a_time_is_left_out_and_clocks_that_tell_nothing_are_that_of_the_take(tmp_path: Path) -> None:
     inf = float("inf")
-    strange = sample(TAGS[0], 0)._replace(time=float("nan"), received=inf, device_time=-inf, rssi=1e308)
+    timeless = sample(TAGS[0], 0)._replace(time=float("nan"))
+    strange = sample(TAGS[0], 1)._replace(received=inf, device_time=-inf)
 
-    take, report = read_take(record(tmp_path, [strange, sample(TAGS[0], 1)]))
+    take, report = read_take(record(tmp_path, [timeless, strange, sample(TAGS[0], 2)]))
 
-    assert (report.samples, report.damaged) == (2, 0)
-    assert np.isnan(take.streams[0].time[0])
-    assert take.streams[0].time[1] == 0.0  # the first time there is
-    assert take.streams[0].device_time[0] == -inf
+    stream = take.streams[0]
+    assert (report.samples, report.damaged) == (2, 2)
+    assert stream.time.tolist() == pytest.approx([0.0, 1 / RATE])  # 0 is the first time there is
+    assert stream.received[0] == 0.0
+    assert stream.device_time[0] == strange.time
 
 
 def test_what_a_sensor_calls_itself_is_made_harmless(tmp_path: Path) -> None:
