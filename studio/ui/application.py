@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QApplication
 
 import studio
 from studio.storage.crash_report import crash_folder, write_crash_report
+from studio.ui.garbage import GarbageCollector
 from studio.ui.presenters.folders import show_folder
 from studio.ui.settings import Settings, settings_file
 from studio.ui.start_guard import StartGuard
@@ -40,10 +41,14 @@ def run(source: str = "") -> int:
     reporter = CrashReporter(window, theme)
     reporter.install()
     window.start(source or _first_source(settings, guard, window))
+    garbage = GarbageCollector()
+    window.tick.ticked.connect(garbage.tick)
+    garbage.begin()
     try:
         code = application.exec()
         window.shut_down()
     finally:
+        garbage.end()
         reporter.remove()
     guard.end()
     return code

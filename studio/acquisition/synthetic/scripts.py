@@ -89,6 +89,7 @@ WORN_SCRIPTS: dict[str, Script] = {
         cues=(*PRELUDE_CUES, Mark(SCRIPT_BEGINS + 2.2, "pose", "t", SCRIPT_BEGINS + 5.2)),
     ),
     "walk": Script(walks=True),
+    "holds": Script(repeated=(Excursion(BOW, 7.0, 1.4, 13.6, 1.4),), period=16.0),
     "sit": Script(
         repeated=(
             Excursion(_LEAN, 0.0, 0.9, 1.6, 1.0),

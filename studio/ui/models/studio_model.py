@@ -92,6 +92,9 @@ class StudioModel(QObject):
         self._operations: list[Operation] = []
         self._health_at = -math.inf
         self._knows_body = False
+        self.heard_at = -math.inf
+        """s, clock of ``now``: when a sample of any sensor last came in."""
+        self._received = 0
 
     @property
     def buffer(self) -> LiveBuffer:
@@ -201,8 +204,10 @@ class StudioModel(QObject):
                 break
             self._tell(event)
         for operation in [*self._operations]:
-            operation.poll()
-        self._operations = [operation for operation in self._operations if operation.is_running]
+            operation.poll()  # what it tells may begin another one
+            if not operation.is_running:
+                self._operations.remove(operation)
+                operation.deleteLater()
         if now - self._health_at >= HEALTH_EVERY:
             self._health_at = now
             self._ask(self._look(), self._looked)
@@ -305,6 +310,9 @@ class StudioModel(QObject):
 
     def _looked(self, told: tuple[dict[SensorId, HealthSnapshot], float, float | None, bool]) -> None:
         self.health, self.queue_fill, self.seconds_left, full = told
+        received = sum(snapshot.received for snapshot in self.health.values())
+        if received != self._received:
+            self._received, self.heard_at = received, self.now()
         self.health_changed.emit()
         if full:
             self.recording_full.emit()

@@ -9,7 +9,7 @@ from PySide6.QtCore import QObject, Signal
 from studio.core.errors import StudioError
 from studio.storage.take_file import Saved
 from studio.storage.take_summary import TakeSummary, summarise
-from studio.ui.live_show import SILENT_AFTER, LiveShow
+from studio.ui.live_show import LiveShow
 from studio.ui.models.live_angles import LiveAngles
 from studio.ui.models.recorder import Phase, Recorder
 from studio.ui.models.studio_model import StudioModel
@@ -22,11 +22,13 @@ from studio.ui.sound import Sound, Tone
 from studio.ui.views.capture_page import CapturePage, TakenTake
 from studio.ui.views.notices import Action
 from studio.ui.views.plots.angle_plot import AngleCurve
+from studio.ui.views.take_row import numbered
 from studio.ui.views.traces import Traces
 
 TRACES_EVERY = 0.04  # s
 NUMBERS_EVERY = 0.1  # s; what changes faster cannot be read
 TRACE_SECONDS = 10.5  # s
+HEARD = 1.0  # s without any sample: there is nothing to record
 
 
 class CapturePresenter(QObject):
@@ -116,7 +118,7 @@ class CapturePresenter(QObject):
         """Show the last takes, newest first."""
         lost = self.tr("{percent} lost")
         rows = [
-            TakenTake(_numbered(t), length(t.duration_s), lost.format(percent=_percent(t.lost)), str(t.folder))
+            TakenTake(numbered(t), length(t.duration_s), lost.format(percent=_percent(t.lost)), str(t.folder))
             for t in takes
             if t.refusal is None
         ]
@@ -146,7 +148,7 @@ class CapturePresenter(QObject):
             self._traces.show_angles([AngleCurve(in_words(n), side_of(n), *windows[n]) for n in names], now)
 
     def _is_anything_heard(self) -> bool:
-        return any(told.silent_for <= SILENT_AFTER for told in self._model.health.values())
+        return self._model.now() - self._model.heard_at <= HEARD
 
     def _show_phase(self, _: object = None) -> None:
         self._page.show_phase(self._recorder.phase, self._recorder.elapsed, self._count)
@@ -217,11 +219,6 @@ class CapturePresenter(QObject):
     def _offer_angles(self) -> None:
         names = self._angles.names
         self._page.offer_angles(names, self._angles.chosen, {name: in_words(name) for name in names})
-
-
-def _numbered(take: TakeSummary) -> str:
-    number = take.folder.name.split("_")[0].removeprefix("take-")
-    return f"{number} {take.name}"
 
 
 def _percent(share: float) -> str:

@@ -1,5 +1,6 @@
 """Export: one file after the other is written by the worker, read back, and told."""
 
+import contextlib
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -21,6 +22,13 @@ from studio.ui.views.export_page import ExportPage
 def export_folder() -> Path:
     """Return where exported files go when nobody chose."""
     return Path(platformdirs.user_documents_dir()) / "Kinetag exports"
+
+
+def _made(folders: Sequence[Path]) -> None:
+    """Make folders that are not there; one that cannot be made is told when its file cannot be written."""
+    for folder in dict.fromkeys(folders):
+        with contextlib.suppress(OSError):
+            folder.mkdir(parents=True, exist_ok=True)
 
 
 class ExportPresenter(QObject):
@@ -67,6 +75,10 @@ class ExportPresenter(QObject):
             return
         self._settings.set("last_preset", self._choice.preset)
         self._order, self._left, self._written, self._notes = order, [*order.items], [], {}
+        self._show_progress("read", 0.0)
+        self._model.work(lambda: _made([item.target.parent for item in order.items]), self._on_made)
+
+    def _on_made(self, _: object) -> None:
         self._next()
 
     def _next(self) -> None:

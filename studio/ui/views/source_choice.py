@@ -158,6 +158,7 @@ class SourceChoice(QWidget):
             ("walk", self.tr("A person walks")),
             ("sit", self.tr("A person sits down and stands up")),
             ("reach", self.tr("A person reaches for something")),
+            ("holds", self.tr("A person stands and bows, to practise calibrating")),
             ("n", self.tr("A person stands still")),
             ("rest", self.tr("Tags lie on a table")),
             ("turns", self.tr("Tags are turned by hand")),

@@ -8,7 +8,7 @@ from studio.core.body import Place
 from studio.core.take import HeadingSource
 from studio.ui.models.playhead import clock
 from studio.ui.models.take_review import TakeReview, heading_sources
-from studio.ui.wording import POSES
+from studio.ui.wording import POSES, duration
 
 MOST_NAMED = 4  # places; more are counted
 _STRONGEST_FIRST: tuple[HeadingSource, ...] = ("bow", "two poses", "common world", "strap rule", "unknown")
@@ -39,8 +39,11 @@ def _loss(review: TakeReview) -> str:
 
 def _calibration(review: TakeReview) -> str:
     alignment = review.motion.alignment
-    words = _tr("Angles are relative to the held {pose}, {from_s} to {to_s} in this take.")
     pose = POSES.get(alignment.pose, alignment.pose)
+    if alignment.to_s <= 0.0:
+        words = _tr("Angles are relative to the {pose} that was held {ago} before this take.")
+        return words.format(pose=pose, ago=duration(-alignment.to_s))
+    words = _tr("Angles are relative to the held {pose}, {from_s} to {to_s} in this take.")
     return words.format(pose=pose, from_s=clock(alignment.from_s)[:-1], to_s=clock(alignment.to_s)[:-1])
 
 

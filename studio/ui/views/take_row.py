@@ -98,7 +98,7 @@ class TakeRow(QStyledItemDelegate):
         painter.setFont(font)
         faded = summary.verdict == "bad" or summary.refusal is not None
         painter.setPen(QColor(tokens.muted if faded else tokens.text))
-        words = self._name.elidedText(summary.name, Qt.TextElideMode.ElideMiddle, right - left)
+        words = self._name.elidedText(numbered(summary), Qt.TextElideMode.ElideMiddle, right - left)
         painter.drawText(QRect(left, area.top(), right - left, area.height()), _MIDDLE, words)
 
     def _paint_facts(self, painter: QPainter, area: QRect, summary: TakeSummary, model: TakeListModel) -> None:
@@ -127,6 +127,12 @@ class TakeRow(QStyledItemDelegate):
         if summary.recovered:
             return self.tr("▲ recovered"), tokens.warn
         return "", ""
+
+
+def numbered(summary: TakeSummary) -> str:
+    """Return the take's number within its session, and its name."""
+    number = summary.folder.name.partition("_")[0].removeprefix("take-")
+    return f"{number}  {summary.name}" if number.isdecimal() else summary.name
 
 
 _MIDDLE = int(Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft | Qt.TextFlag.TextSingleLine)
