@@ -1,7 +1,7 @@
 """A link is an open source of bytes; a driver finds and opens links of one kind."""
 
-from collections.abc import AsyncIterator, Sequence
-from typing import NamedTuple, Protocol
+from collections.abc import AsyncIterator, Mapping, Sequence
+from typing import NamedTuple, Protocol, runtime_checkable
 
 from studio.core.sample import Sample, SensorInfo
 from studio.core.take import Mark
@@ -13,6 +13,8 @@ class Arrival(NamedTuple):
     received: float
     """s, monotonic clock of this computer (a simulated one where the source runs faster than time)."""
     data: bytes
+    link: str = ""
+    """Which link of a ``Bundle`` it came by; empty for any other."""
 
 
 class Known(NamedTuple):
@@ -47,6 +49,14 @@ class Link(Protocol):
 
     async def close(self) -> None:
         """Close the source; waits until its threads have ended."""
+
+
+@runtime_checkable
+class Bundle(Protocol):
+    """A link through which several come: a replayed take that was recorded from two receivers."""
+
+    dialects: Mapping[str, str]
+    """Name of each link to its dialect."""
 
 
 class Found(NamedTuple):

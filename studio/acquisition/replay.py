@@ -2,12 +2,12 @@
 
 import asyncio
 import time
-from collections.abc import AsyncIterator, Iterable, Sequence
+from collections.abc import AsyncIterator, Iterable, Mapping, Sequence
 
 from studio.acquisition.driver import Arrival, Cue, Known
 
 BATCH = 0.02  # s of recorded time handed over at once
-LARGEST_BATCH = 256  # pieces handed over at once when the pace is free
+LARGEST_BATCH = 32  # pieces handed over at once when the pace is free: a third of a second, so that others keep up
 
 
 class ReplayLink:
@@ -15,21 +15,23 @@ class ReplayLink:
 
     Parameters
     ----------
+    dialects : mapping
+        Name of each recorded link to its dialect; empty where the pieces need no decoding.
     pieces : iterable of (s of take time, piece)
-        In the order of arrival. The link never opens a file: it is given what was read.
+        In the order of arrival, each with the link it came by. The link never opens a file: it is given what was read.
     speed : float
         1 is real time; infinity hands everything over as fast as it is read.
     """
 
     def __init__(
         self,
-        name: str,
-        dialect: str,
+        dialects: Mapping[str, str],
         pieces: Iterable[tuple[float, Arrival | Known | Cue]],
         speed: float = 1.0,
     ) -> None:
-        self.name = name
-        self.dialect = dialect
+        self.dialects = dialects
+        self.name = next(iter(dialects), "replay")
+        self.dialect = dialects.get(self.name, "")
         self.paced = speed != float("inf")
         self._pieces = pieces
         self._speed = speed
@@ -67,7 +69,7 @@ class ReplayLink:
 def _moved(piece: Arrival | Known | Cue, start: float) -> Arrival | Known | Cue:
     """Return a piece with take times moved to this computer's clock."""
     if isinstance(piece, Arrival):
-        return Arrival(piece.received + start, piece.data)
+        return piece._replace(received=piece.received + start)
     if isinstance(piece, Known):
         sample = piece.sample
         moved = sample._replace(time=sample.time + start, received=sample.received + start)

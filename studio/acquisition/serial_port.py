@@ -77,7 +77,8 @@ class SerialLink:
         self.dropped = 0
         """Bytes thrown away because nobody took what came before."""
         self._port = port
-        self._path = path
+        self.place = path
+        """The name of the port now; it may come back under another."""
         self._baud = baud
         self._identity = identity
         self._loop = asyncio.get_running_loop()
@@ -107,11 +108,11 @@ class SerialLink:
             The port is lost at the moment, or takes nothing.
         """
         if not self.is_connected:
-            raise PortGone(self._path)
+            raise PortGone(self.place)
         try:
             await asyncio.to_thread(self._port.write, data)
         except OSError as error:
-            raise PortGone(self._path) from error
+            raise PortGone(self.place) from error
 
     async def close(self) -> None:
         """Close the port; returns when the reader has ended."""
@@ -152,14 +153,14 @@ class SerialLink:
         delay = FIRST_RETRY
         while not self._closing.wait(delay):
             delay = min(2 * delay, LAST_RETRY)
-            path = self._path if self._identity is None else _path_of(self._identity)
+            path = self.place if self._identity is None else _path_of(self._identity)
             if path is None:
                 continue
             try:
                 self._port = _open(path, self._baud)
             except LinkError:
                 continue
-            self._path = path
+            self.place = path
             self._tell(self._note_connection, True)
             self._greet()
             return True

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from studio.core.errors import StudioError
+from studio.core.errors import AlignmentError, StudioError
 from studio.core.sample import SensorId
 from studio.core.take import Alignment, Mark
 
@@ -18,7 +18,10 @@ class SensorFound:
 
 @dataclass(frozen=True, slots=True)
 class LinkNoted:
-    """Something happened on a link: a reboot, a gap, two tags with one number…"""
+    """Something happened on a link: a reboot, a gap, two tags with one number, a silent tag, a port that is gone…
+
+    Kinds and facts stand with ``acquisition.tracker.LinkTracker`` and ``capture.link_watch.LinkWatch``.
+    """
 
     kind: str
     facts: Mapping[str, object]
@@ -30,6 +33,8 @@ class LinkEnded:
 
     source: str
     error: StudioError | None
+    mistake: BaseException | None = None
+    """Ours, for the crash report: what was recorded is to be saved first."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,13 +64,17 @@ class Aligned:
     """The body follows the sensors from now on."""
 
     alignment: Alignment
+    error: AlignmentError | None = None
+    """Which limbs are to be repeated, when not all could be used."""
 
 
 @dataclass(frozen=True, slots=True)
 class AlignmentRefused:
-    """A held pose could not be used."""
+    """A held pose could not be used; what was in force before stays."""
 
-    error: StudioError
+    error: AlignmentError
+    alignment: Alignment | None = None
+    """What was found all the same: the limbs, when only their headings are missing."""
 
 
 Event = SensorFound | LinkNoted | LinkEnded | RecordingStarted | RecordingEnded | MarkSet | Aligned | AlignmentRefused

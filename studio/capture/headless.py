@@ -1,14 +1,15 @@
 """Recording without a window: connect, wait for the sensors, keep a while, close."""
 
 import asyncio
+from collections.abc import Coroutine
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from studio.capture.live_session import LiveSession
 from studio.capture.setups import setup_for, with_stature
 from studio.capture.sources import open_source
-from studio.core.errors import FolderNotWritable, NoData, StudioError, WrittenByNewerStudio
+from studio.core.errors import FolderNotWritable, NoData, StoppedEarly, StudioError, WrittenByNewerStudio
 from studio.core.take import Setup
 from studio.storage.person_file import Person, load_person, save_person
 from studio.storage.take_file import Saved
@@ -33,7 +34,12 @@ class Recorded(NamedTuple):
 
     saved: Saved
     stopped_by: StudioError | None
-    """DiskFull, for one; None when it has its length or was stopped by hand."""
+    """DiskFull or a lost source; None when it has its length or was stopped by hand."""
+    mistake: BaseException | None
+    """Ours, that ended it: for the crash report."""
+    sensors: int
+    loss: float
+    """Lost frames as a share of all, 0…1."""
 
 
 async def record(request: RecordRequest, session: LiveSession, stop: asyncio.Event) -> Recorded:
@@ -42,32 +48,51 @@ async def record(request: RecordRequest, session: LiveSession, stop: asyncio.Eve
     Raises
     ------
     LinkError, RecordingError, SetupError, TakeFileError
+        StoppedEarly when ``stop`` came before anything was kept.
     """
     with_stature(request.library, request.person, request.stature)
     person = load_person(request.library, request.person)
     opened = await open_source(request.source)
     await session.connect(request.source, opened.link)
-    stopper: asyncio.Task[bool] | None = None
+    stopper = asyncio.create_task(stop.wait())
     try:
-        await session.sensors_known()
+        if not await _comes_first(session.sensors_known(), stopper):
+            raise StoppedEarly(request.source)
         session.adopt(_setup(request, session, opened.setup, person))
         recording = await session.start_recording(
             request.library, request.person, request.name, request.source, request.seconds
         )
-        stopper = asyncio.create_task(stop.wait())
-        finished = asyncio.create_task(session.finished(recording))
-        await asyncio.wait({stopper, finished}, return_when=asyncio.FIRST_COMPLETED)
-        finished.cancel()
+        await _comes_first(session.finished(recording), stopper)
+        stopped_by = recording.writer.failure or session.lost()
         saved = await session.stop_recording()
+        sensors, loss = len(session.infos), _loss(session)
     finally:
-        if stopper is not None:
-            stopper.cancel()
+        stopper.cancel()
         await session.disconnect()
-    if saved.samples == 0:
-        raise NoData(request.source, 0)
+    mistake = session.take_mistake()
+    if saved.samples == 0 and mistake is None:
+        raise stopped_by or NoData(request.source, 0)
     if opened.setup is None:
         _remember(request, session, person)
-    return Recorded(saved, recording.writer.failure)
+    return Recorded(saved, stopped_by, mistake, sensors, loss)
+
+
+async def _comes_first(work: Coroutine[Any, Any, None], stopper: asyncio.Task[bool]) -> bool:
+    """Wait for something or for the stop; False when it was the stop."""
+    task = asyncio.create_task(work)
+    await asyncio.wait({task, stopper}, return_when=asyncio.FIRST_COMPLETED)
+    if not task.done():
+        task.cancel()
+        await asyncio.wait({task})
+        return False
+    task.result()
+    return True
+
+
+def _loss(session: LiveSession) -> float:
+    counts = session.health().values()
+    lost = sum(health.lost for health in counts)
+    return lost / max(lost + sum(health.received for health in counts), 1)
 
 
 def _setup(request: RecordRequest, session: LiveSession, offered: Setup | None, person: Person) -> Setup:

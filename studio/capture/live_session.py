@@ -6,54 +6,37 @@ Everything runs on the acquisition thread (``Runtime.call``); the window reads `
 import asyncio
 import math
 import time
-from collections import deque
-from collections.abc import Sequence
-from datetime import UTC, datetime
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from queue import SimpleQueue
-from typing import NamedTuple, Protocol, runtime_checkable
 
-import studio
 from studio.acquisition.dialects.tag_advert import VERSION as PROTOCOL_VERSION
 from studio.acquisition.driver import Arrival, Cue, Known, Link
 from studio.acquisition.health import SensorHealth
 from studio.capture import events
+from studio.capture.body_calibration import BodyCalibration
 from studio.capture.link_intake import LinkIntake
+from studio.capture.link_watch import Note
 from studio.capture.live_buffer import LiveBuffer
-from studio.capture.recording import Recording
-from studio.core.alignment import align, require_headings
-from studio.core.errors import AlignmentError, LinkError, NoData, StudioError, UnsupportedVersion
+from studio.capture.pre_roll import PreRoll
+from studio.capture.procedures.judged_hold import Judged
+from studio.capture.recording import Recording, TakeIdentity, anchor_now, open_take
+from studio.core.body import Place
+from studio.core.errors import AlreadyRecording, LinkError, NoData, PortGone, StudioError, UnsupportedVersion
 from studio.core.live_solver import Solver
 from studio.core.sample import Sample, SensorId, SensorInfo
-from studio.core.take import Mark, Setup
-from studio.storage.facts import Anchor
-from studio.storage.profile import PROFILE
-from studio.storage.session_folder import open_session
+from studio.core.take import Calibration, Mark, Setup
 from studio.storage.take_file import Saved
-from studio.storage.take_writer import TakeWriter
 
 PRE_ROLL = 2.0  # s kept from before R
 SETTLED = 0.5  # s without a new sensor: all have been heard (25 frames)
 PATIENCE = 10.0  # s of waiting for the first sample; an Arduino that resets on opening needs up to 8 s
 HISTORY = 120.0  # s of attitudes kept for aligning
-HEALTH_EVERY = 10.0  # s between two notes of counts and clocks in the take
-HEALTH_KEPT = ("received", "lost", "malformed", "duplicates", "late", "rate", "jitter", "offset", "skew", "rssi")
 BUSY_QUEUE = 0.5  # of the take-writer's queue; a source without a pace waits then
-
-
-class Kept(NamedTuple):
-    """Something of the pre-roll."""
-
-    link: str
-    piece: Arrival | Sample
-
-
-@runtime_checkable
-class KnowsTruth(Protocol):
-    """A link that can hand over a file to be put into the take: the synthetic suit's true motion."""
-
-    def truth_attachment(self) -> bytes:
-        """Return the file."""
+LOOK_EVERY = 0.25  # s between two looks at what does not come
+STALLED = 2 * LOOK_EVERY  # s; after such a pause what came meanwhile is still to be read, and nobody is silent
 
 
 class LiveSession:
@@ -67,55 +50,71 @@ class LiveSession:
         self.recording: Recording | None = None
         self._attitude = attitude
         self._solver = Solver(self.setup, attitude, {}, HISTORY)
+        self._body = BodyCalibration()
         self._intakes: dict[str, LinkIntake] = {}
         self._tasks: dict[str, asyncio.Task[None]] = {}
-        self._poses: list[Mark] = []
-        self._pre_roll: deque[Kept] = deque()
-        self._pre_roll_s = pre_roll
+        self._ended_by: dict[str, LinkError | None] = {}
+        self._mistake: BaseException | None = None
+        self._watcher: asyncio.Task[None] | None = None
+        self._pre_roll = PreRoll(pre_roll)
         self._newest_sensor = float("inf")
+        self._first: float | None = None
         self._newest = float("-inf")
-        self._health_noted = float("-inf")
+        self._heard = float("-inf")
         self._settled = asyncio.Event()
         self._ended = asyncio.Event()
 
     async def connect(self, source: str, link: Link) -> None:
         """Start reading an open link; it is called by its source from now on."""
-        self._intakes[source] = LinkIntake(link)
+        intake = self._intakes[source] = LinkIntake(link)
         self._ended.clear()
-        self._tasks[source] = asyncio.create_task(self._read(source, link), name=f"link {source}")
+        self._ended_by.pop(source, None)
+        task = self._tasks[source] = asyncio.create_task(self._read(intake), name=f"link {source}")
+        task.add_done_callback(partial(self._link_ended, source))
+        if self._watcher is None:
+            self._watcher = asyncio.create_task(self._watch(), name="watch")
+            self._watcher.add_done_callback(self._keep_mistake)
 
     async def disconnect(self) -> None:
         """Close all links."""
         for intake in self._intakes.values():
             await intake.link.close()
-        for task in self._tasks.values():
+        tasks = [task for task in (*self._tasks.values(), self._watcher) if task is not None]
+        for task in tasks:
             task.cancel()
-        await asyncio.gather(*self._tasks.values(), return_exceptions=True)
+        await asyncio.gather(*tasks, return_exceptions=True)
         self._tasks.clear()
         self._intakes.clear()
+        self._watcher = None
 
     def forget(self) -> None:
         """Forget the sensors of a source that was closed."""
         self.infos.clear()
         self.buffer.clear()
         self._pre_roll.clear()
-        self._poses.clear()
+        self._body.clear()
         self._settled.clear()
-        self._newest_sensor, self._newest = math.inf, -math.inf
-        self._solver = Solver(self.setup, self._attitude, {}, HISTORY)
+        self._ended_by.clear()
+        self._first = None
+        self._newest_sensor, self._newest, self._heard = math.inf, -math.inf, -math.inf
+        self._solver = Solver(self.setup, self._attitude, self._calibrations(self.setup), HISTORY)
 
     async def sensors_known(self, patience: float = PATIENCE) -> None:
         """Wait until sensors send and no new one has appeared for half a second.
 
         Raises
         ------
-        NoData, UnsupportedVersion
+        LinkError, UnsupportedVersion
             Nothing usable came within ``patience`` seconds.
         """
         waiting = {asyncio.create_task(e.wait()) for e in (self._settled, self._ended)}
         _, pending = await asyncio.wait(waiting, timeout=patience, return_when=asyncio.FIRST_COMPLETED)
         for task in pending:
             task.cancel()
+        if not self.infos and (mistake := self.take_mistake()) is not None:
+            raise mistake
+        if not self.infos and (error := self.lost()) is not None:
+            raise error
         foreign = [v for intake in self._intakes.values() if (v := intake.foreign_version()) is not None]
         if not self.infos and foreign:
             raise UnsupportedVersion(foreign[0], PROTOCOL_VERSION)
@@ -126,21 +125,35 @@ class LiveSession:
         """Return the counts of all sensors."""
         return {sensor: health for intake in self._intakes.values() for sensor, health in intake.health().items()}
 
+    def lost(self) -> LinkError | None:
+        """Return why nothing comes any more when every source ended with an error or is gone, else None."""
+        errors: list[LinkError] = []
+        for source, intake in self._intakes.items():
+            error = self._ended_by.get(source)
+            if error is None and intake.watch.lost is not None:
+                error = PortGone(intake.watch.lost)
+            if error is None:
+                return None
+            errors.append(error)
+        return errors[0] if errors else None
+
+    def take_mistake(self) -> BaseException | None:
+        """Return, once, what broke on the way: a mistake of ours, to be raised where it ends in a crash report."""
+        mistake, self._mistake = self._mistake, None
+        return mistake
+
     def adopt(self, setup: Setup) -> None:
         """Put another setup in force; a new assignment needs a new alignment, by poses whose samples are still kept."""
-        is_other = setup.assignment != self.setup.assignment or setup.calibrations != self.setup.calibrations
-        self.setup = setup
-        if is_other:
-            calibrations = {calibration.sensor: calibration for calibration in setup.calibrations}
-            self._solver = Solver(setup, self._attitude, calibrations, HISTORY)
-            for info in self.infos.values():
-                self._solver.add_sensor(info)
-            for kept in self._pre_roll:  # the filters have seen what is about to be kept
-                if isinstance(kept.piece, Sample):
-                    self._solver.push(kept.piece)
-            first = next((kept.piece.time for kept in self._pre_roll if isinstance(kept.piece, Sample)), math.inf)
-            self._poses = [pose for pose in self._poses if pose.time >= first]
-            self._align()
+        before, self.setup = self.setup, setup
+        if setup.calibrations != before.calibrations:
+            self._recalibrate(before, setup)
+        self._solver.adopt(setup, self._pre_roll.samples() if setup.assignment != before.assignment else ())
+        if setup.assignment != before.assignment:
+            first = self._pre_roll.first()
+            held = [one for one in self._body.marks if first is not None and one[0].time >= first]
+            self._body.clear()
+            for mark, only in held:
+                self._judge(mark, only)
 
     async def start_recording(
         self, library: Path, person: str, name: str, source: str, seconds: float = math.inf
@@ -157,32 +170,41 @@ class LiveSession:
         RecordingError, SetupError
             Nothing was started.
         """
-        anchor = Anchor(datetime.now(UTC).isoformat(), time.perf_counter())
-        versions = {"studio": studio.__version__, "protocol": str(PROTOCOL_VERSION), "profile": PROFILE}
-        setup = self.setup
+        if self.recording is not None:
+            raise AlreadyRecording(str(self.recording.writer.folder))
+        if self._pre_roll.is_frozen:
+            raise AlreadyRecording(str(library))
+        self._pre_roll.is_frozen = True
+        try:
+            recording = await self._begin(library, person, name, source, seconds)
+        finally:
+            self._pre_roll.is_frozen = False
+        self._pre_roll.clear()
+        self.recording = recording
+        self.events.put(events.RecordingStarted(recording.writer.folder))
+        return recording
 
-        def open_file() -> TakeWriter:
-            session = open_session(library, person, datetime.now(UTC).astimezone().date())
-            return TakeWriter(
-                session, name, person=person, source=source, setup=setup, versions=versions, anchor=anchor
-            )
-
-        recording = Recording(await asyncio.to_thread(open_file), seconds)
+    async def _begin(self, library: Path, person: str, name: str, source: str, seconds: float) -> Recording:
+        first = self._pre_roll.first()
+        carried = self._body.carried(first, self._solver, self.setup)
+        if carried is None and first == self._first:  # a replayed take carries its own, from its first sample on
+            carried = self.setup.carried
+        newest = self._newest
+        anchor = anchor_now()
+        identity = TakeIdentity(library, person, name, source, replace(self.setup, carried=carried), anchor)
+        recording = Recording(await asyncio.to_thread(open_take, identity), seconds, anchor.monotonic)
         for intake in self._intakes.values():
-            link = intake.link
-            recording.note("link", {"link": link.name, "dialect": link.dialect}, anchor.monotonic)
+            for link, dialect in intake.dialects.items():
+                recording.note("link", {"link": link, "dialect": dialect}, anchor.monotonic)
         for kept in self._pre_roll:
             if isinstance(kept.piece, Sample):
                 recording.sample(kept.piece, self.infos[kept.piece.sensor])
             else:
                 recording.raw(kept.link, kept.piece.received, kept.piece.data)
-        for mark in self._poses:
-            if recording.first is not None and mark.time >= recording.first:
+        for mark, _ in self._body.marks:
+            if first is not None and self._body.is_within(first) and mark.time >= first:
                 recording.mark(mark)
-        recording.mark(Mark(max(self._newest, recording.first or 0.0), "record"))
-        self._pre_roll.clear()
-        self.recording = recording
-        self.events.put(events.RecordingStarted(recording.writer.folder))
+        recording.mark(Mark(anchor.monotonic if first is None else max(newest, first), "record"))
         return recording
 
     async def stop_recording(self) -> Saved:
@@ -197,10 +219,10 @@ class LiveSession:
         recording, self.recording = self.recording, None
         if recording is None:
             raise ValueError("nothing is being recorded")
-        self._note_health(recording)
+        recording.note_health(self.health().values(), self._newest)
         for intake in self._intakes.values():
-            if isinstance(intake.link, KnowsTruth):
-                recording.writer.attach("truth", "application/octet-stream", intake.link.truth_attachment())
+            if (truth := intake.truth()) is not None:
+                recording.writer.attach("truth", "application/octet-stream", truth)
         failure: StudioError | None = recording.writer.failure
         try:
             return await asyncio.wrap_future(recording.writer.stop())
@@ -225,49 +247,91 @@ class LiveSession:
         self._set(mark)
         return mark
 
-    def held(self, pose: Mark) -> None:
-        """Note that a pose was held (times on the clock of ``Sample.time``) and align the body by it."""
-        self._set(pose)
-        self._poses.append(pose)
-        self._align()
+    async def held(self, pose: Mark, only: Collection[Place] = ()) -> Judged:
+        """Align the body by a pose that was held; return what came of it, limb by limb.
 
-    def _align(self) -> None:
-        assignment = self.setup.assignment
-        if not assignment.sensors or not self._poses:
-            return
-        try:
-            alignment = align(self._solver.tracks(), assignment, self._poses, self.setup.mounting, HISTORY)
-            require_headings(alignment)
-        except AlignmentError as error:
-            self.events.put(events.AlignmentRefused(error))
-            return
-        self._solver.use(alignment)
-        self.events.put(events.Aligned(alignment))
+        Parameters
+        ----------
+        pose : Mark
+            Times on the clock of ``Sample.time``.
+        only : places
+            Limbs that were repeated while the others stay as they are; empty for the whole body.
+        """
+        self._set(pose)
+        return self._judge(pose, only)
+
+    def look(self, now: float) -> None:
+        """Notice what did not come; ``now`` is this computer's clock, s."""
+        for source, intake in self._intakes.items():
+            if intake.link.paced and not self._tasks[source].done():
+                self._note(intake.watch.look(now), now)
+        if self.recording is not None and all(intake.link.paced for intake in self._intakes.values()):
+            self.recording.look(now, self._heard)
+
+    def _judge(self, pose: Mark, only: Collection[Place]) -> Judged:
+        before = self._body.alignment
+        judged = self._body.add(pose, only, self._solver, self.setup)
+        if self._body.alignment is not None and self._body.alignment is not before:
+            self.events.put(events.Aligned(self._body.alignment, judged.error))
+        elif judged.error is not None:
+            self.events.put(events.AlignmentRefused(judged.error, judged.alignment))
+        return judged
+
+    def _recalibrate(self, before: Setup, setup: Setup) -> None:
+        known, wanted = self._calibrations(before), self._calibrations(setup)
+        for sensor in known.keys() | wanted.keys():
+            calibration = wanted.get(sensor)
+            if calibration == known.get(sensor):
+                continue
+            if calibration is not None and self._body.marks:
+                self._solver.recalibrate(calibration)  # the body stays calibrated
+            else:
+                self._solver.restart(sensor, calibration, self._pre_roll.samples(sensor))
+
+    @staticmethod
+    def _calibrations(setup: Setup) -> dict[SensorId, Calibration]:
+        return {calibration.sensor: calibration for calibration in setup.calibrations}
 
     def _follow(self, mark: Mark) -> None:
+        self._set(mark)
         if mark.kind == "pose":
-            self.held(mark)
-        else:
-            self._set(mark)
+            self._judge(mark, ())
 
     def _set(self, mark: Mark) -> None:
         if self.recording is not None:
             self.recording.mark(mark)
         self.events.put(events.MarkSet(mark))
 
-    async def _read(self, source: str, link: Link) -> None:
-        intake = self._intakes[source]
-        error: StudioError | None = None
-        try:
-            async for batch in link.arrivals():
-                self._take_in(intake, batch)
-                await intake.ask(self._newest)
-                await self._give_way(link)
-        except LinkError as refusal:
-            error = refusal
-        self.events.put(events.LinkEnded(source, error))
-        if all(task.done() or task is asyncio.current_task() for task in self._tasks.values()):
+    async def _read(self, intake: LinkIntake) -> None:
+        async for batch in intake.link.arrivals():
+            self._take_in(intake, batch, time.perf_counter())
+            await intake.ask(self._newest)
+            await self._give_way(intake.link)
+
+    def _link_ended(self, source: str, task: asyncio.Task[None]) -> None:
+        if self._tasks.get(source) is not task or task.cancelled():
+            return
+        problem = task.exception()
+        error = self._ended_by[source] = problem if isinstance(problem, LinkError) else None
+        self._keep_mistake(task)
+        self.events.put(events.LinkEnded(source, error, None if problem is error else problem))
+        if all(task.done() for task in self._tasks.values()):
             self._ended.set()
+
+    def _keep_mistake(self, task: asyncio.Task[None]) -> None:
+        """Keep our own mistake until somebody who can end in a crash report asks for it; recordings end by it."""
+        problem = None if task.cancelled() else task.exception()
+        if problem is not None and not isinstance(problem, LinkError):
+            self._mistake = self._mistake or problem
+            self._ended.set()
+
+    async def _watch(self) -> None:
+        while True:
+            began = time.perf_counter()
+            await asyncio.sleep(LOOK_EVERY)
+            now = time.perf_counter()
+            if now - began < STALLED:
+                self.look(now)
 
     async def _give_way(self, link: Link) -> None:
         """Let others run; a source without a pace waits for the disk."""
@@ -278,33 +342,34 @@ class LiveSession:
         while self.recording is not None and self.recording.writer.fill > BUSY_QUEUE:  # noqa: ASYNC110
             await asyncio.sleep(0.005)
 
-    def _take_in(self, intake: LinkIntake, batch: Sequence[Arrival | Known | Cue]) -> None:
+    def _take_in(self, intake: LinkIntake, batch: Sequence[Arrival | Known | Cue], now: float) -> None:
+        self._heard = now
         for piece in batch:
             if isinstance(piece, Cue):
                 self._follow(piece.mark)
                 continue
             if isinstance(piece, Arrival):
-                self._keep_raw(intake.link.name, piece)
+                self._keep_raw(intake.name_of(piece), piece)
             for sample in intake.samples(piece):
+                heard = now if intake.link.paced else sample.received  # without a pace it has a clock of its own
+                self._note(intake.watch.heard(sample.sensor, heard), sample.time)
                 self._take_sample(intake, sample)
-        if self.recording is not None and self._newest - self._health_noted >= HEALTH_EVERY:
-            self._note_health(self.recording)
-        for kind, facts in intake.notes():
+        if not intake.link.paced:
+            self._note(intake.watch.look(self._newest), self._newest)
+        if self.recording is not None and self.recording.health_is_due(self._newest):
+            self.recording.note_health(self.health().values(), self._newest)
+        self._note(intake.notes(), self._newest)
+
+    def _note(self, notes: Iterable[Note], at: float) -> None:
+        for kind, facts in notes:
             self.events.put(events.LinkNoted(kind, facts))
             if self.recording is not None:
-                self.recording.note(kind, facts, self._newest)
-
-    def _note_health(self, recording: Recording) -> None:
-        """Keep the counts and clocks of all sensors; what the samples alone do not tell."""
-        self._health_noted = self._newest
-        for intake in self._intakes.values():
-            for sensor, health in intake.health().items():
-                told = health.snapshot(self._newest)
-                facts = {name: getattr(told, name) for name in HEALTH_KEPT}
-                recording.writer.event("health", {"sensor": sensor, **facts}, self._newest)
+                self.recording.note(kind, facts, at)
 
     def _take_sample(self, intake: LinkIntake, sample: Sample) -> None:
         info = intake.infos[sample.sensor]
+        if self._first is None:
+            self._first = sample.time
         if self.infos.get(sample.sensor) is not info:
             self._meet(info, sample)
         self._newest = max(self._newest, sample.time)
@@ -313,8 +378,8 @@ class LiveSession:
         if self.recording is not None:
             self.recording.sample(sample, info)
         else:
-            self._pre_roll.append(Kept(intake.link.name, sample))
-            self._forget()
+            self._pre_roll.keep(intake.link.name, sample)
+            self._pre_roll.forget(self._newest)
         self.buffer.add(sample)
         for frame in self._solver.push(sample):
             self.buffer.show(frame.attitudes, self._solver.pose(frame))
@@ -330,8 +395,4 @@ class LiveSession:
         if self.recording is not None:
             self.recording.raw(link, piece.received, piece.data)
         else:
-            self._pre_roll.append(Kept(link, piece))
-
-    def _forget(self) -> None:
-        while self._pre_roll and self._pre_roll[0].piece.received < self._newest - self._pre_roll_s:
-            self._pre_roll.popleft()
+            self._pre_roll.keep(link, piece)

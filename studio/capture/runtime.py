@@ -1,8 +1,9 @@
 """The acquisition thread: one asyncio loop for all links, dialects and the solver."""
 
 import asyncio
+import contextlib
 import threading
-from collections.abc import Coroutine
+from collections.abc import Callable, Coroutine
 from concurrent.futures import Future
 from typing import Any, TypeVar
 
@@ -22,6 +23,11 @@ class Runtime:
     def call(self, coroutine: Coroutine[Any, Any, T]) -> Future[T]:
         """Run a coroutine on the acquisition thread and return its future."""
         return asyncio.run_coroutine_threadsafe(coroutine, self._loop)
+
+    def soon(self, callback: Callable[[], object]) -> None:
+        """Run a function on the acquisition thread as soon as it can; nothing happens once the thread has ended."""
+        with contextlib.suppress(RuntimeError):
+            self._loop.call_soon_threadsafe(callback)
 
     def stop(self) -> None:
         """Cancel what still runs, wait for it, and end the thread."""

@@ -1,7 +1,9 @@
 """Opening what a person names: a port, the synthetic suit, or a take that is played again."""
 
+import heapq
 import math
 from collections.abc import Iterator
+from operator import itemgetter
 from pathlib import Path
 from typing import NamedTuple, Protocol, runtime_checkable
 
@@ -58,11 +60,8 @@ def _open_replay(source: str, words: str) -> OpenSource:
     folder = Path(path)
     take, _ = read_take(folder)
     dialects = {str(e.facts.get("link")): str(e.facts.get("dialect")) for e in read_events(folder) if e.kind == "link"}
-    if not dialects:
-        return OpenSource(ReplayLink("replay", "", _with_cues(_known(take), take), speed), take.setup)
-    name, dialect = next(iter(dialects.items()))
-    pieces = ((time, Arrival(time, data)) for link, time, data in read_raw(folder) if link == name)
-    return OpenSource(ReplayLink(name, dialect, _with_cues(pieces, take), speed), take.setup)
+    pieces = _recorded(folder, tuple(dialects)) if dialects else _known(take)
+    return OpenSource(ReplayLink(dialects, _with_cues(pieces, take), speed), take.setup)
 
 
 def _speed(source: str, options: str) -> float:
@@ -78,6 +77,15 @@ def _speed(source: str, options: str) -> float:
     if not speed > 0:
         raise SourceUnreadable(source, f"{value} is not a speed")
     return speed
+
+
+def _recorded(folder: Path, links: tuple[str, ...]) -> Iterator[Piece]:
+    """Yield the bytes of all links in the order of arrival; a block of the file has them link by link."""
+
+    def of(link: str) -> Iterator[Piece]:
+        return ((time, Arrival(time, data, link)) for name, time, data in read_raw(folder) if name == link)
+
+    return heapq.merge(*map(of, links), key=itemgetter(0))
 
 
 def _known(take: Take) -> Iterator[Piece]:

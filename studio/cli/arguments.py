@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import studio
-from studio.cli import verbs
+from studio.cli import record_verb, verbs
 from studio.core.attitude import ESTIMATORS
 from studio.core.take import Mark, PoseName
 from studio.export.bvh import DEFAULT_RATE, RATES
@@ -65,7 +65,7 @@ def _record(add: AddVerb) -> None:
     verb.add_argument("--person", default="", metavar="CODE", help="a code such as P014, never a name")
     verb.add_argument("--name", default="take", help="what the take is called")
     _add_stature(verb, "kept for the person, if one is named")
-    verb.set_defaults(run=verbs.record)
+    verb.set_defaults(run=record_verb.record)
 
 
 def _import(add: AddVerb) -> None:

@@ -19,7 +19,7 @@ _HEADINGS = (
 )  # fmt: skip
 
 RECOVERED = (
-    "A take was recovered: its recording was cut off, and what was safe by then is in {folder}. "
+    "A take whose recording was cut off was given its end; what was safe by then is in {folder}. "
     "Look at it with: studio inspect {folder}"
 )
 

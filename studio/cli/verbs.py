@@ -1,21 +1,14 @@
 """What each verb does: ask, wait, print."""
 
-import asyncio
 import json
-import signal
 import sys
 from argparse import Namespace
 from collections.abc import Callable
 from concurrent.futures import Future
 from pathlib import Path
-from types import FrameType
 from typing import TypeVar
 
 from studio.capture import jobs, library
-from studio.capture.headless import RecordRequest
-from studio.capture.headless import record as record_take
-from studio.capture.live_session import LiveSession
-from studio.capture.runtime import Runtime
 from studio.capture.sources import find_sources
 from studio.capture.truth import compare_with_truth
 from studio.capture.worker import Job, Worker
@@ -23,13 +16,11 @@ from studio.cli import reports
 from studio.export.bvh import PRESETS as BVH_PRESETS
 from studio.export.csv_tables import PRESETS as CSV_PRESETS
 from studio.export.material import Wish
-from studio.storage.session_folder import list_takes
 from studio.storage.take_reader import read_take
 
 R = TypeVar("R")
 T = TypeVar("T")
 
-FOREVER = float("inf")
 WAIT = 0.2  # s; between looks, so that Ctrl+C is heard on every system
 
 
@@ -41,46 +32,6 @@ def devices(arguments: Namespace) -> None:
         return
     for source in found:
         print(f"{source.source:<32} {source.label}")
-
-
-def record(arguments: Namespace) -> None:
-    """Record a take; Ctrl+C and a polite kill end it as the time would."""
-    request = RecordRequest(
-        arguments.source,
-        arguments.seconds,
-        arguments.library,
-        arguments.person,
-        arguments.name,
-        arguments.stature,
-    )
-    _tell_of_recovered(arguments.library)
-    runtime = Runtime()
-    session = LiveSession(pre_roll=FOREVER)
-    stop = asyncio.Event()
-
-    async def end() -> None:
-        stop.set()
-
-    def interrupt(number: int, frame: FrameType | None) -> None:
-        runtime.call(end())
-
-    before = {name: signal.signal(name, interrupt) for name in (signal.SIGINT, signal.SIGTERM)}
-    try:
-        recorded = _result(runtime.call(record_take(request, session, stop)))
-    finally:
-        runtime.stop()
-        for name, handler in before.items():
-            signal.signal(name, handler)
-    print(recorded.saved.folder)
-    if recorded.stopped_by is not None:
-        raise recorded.stopped_by
-
-
-def _tell_of_recovered(folder: Path) -> None:
-    """Name the takes whose recording was cut off: they are offered, never opened or changed by themselves."""
-    for take in list_takes(folder):
-        if take.recovered:
-            print(reports.RECOVERED.format(folder=take.folder), file=sys.stderr)
 
 
 def import_recording(arguments: Namespace) -> None:

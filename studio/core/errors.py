@@ -9,7 +9,7 @@ The tree::
     ├── SetupError        PlaceTakenTwice · PersonCodeInvalid
     ├── AlignmentError    NoSensorWorn · PoseMissing · PoseTooShort · MovedDuringHold · HeadingsUnknown
     ├── TakeFileError     NotATake · Damaged · WrittenByNewerStudio · TakeUnsafe · TruthMissing
-    ├── RecordingError    DiskFull · FolderNotWritable · VerificationFailed
+    ├── RecordingError    AlreadyRecording · StoppedEarly · DiskFull · FolderNotWritable · VerificationFailed
     ├── ImportFailed      RecordingUnreadable · MapFileInvalid · FormatUnknown
     └── ExportError       NothingToExport · CannotWrite · ReadBackDiffers
 
@@ -205,6 +205,21 @@ class TruthMissing(TakeFileError):
 
 class RecordingError(StudioError):
     """A recording could not be started, kept or confirmed."""
+
+
+@dataclass(eq=False)
+class AlreadyRecording(RecordingError):
+    """A second recording was to be started while one goes on."""
+
+    folder: str
+    """of the recording that goes on"""
+
+
+@dataclass(eq=False)
+class StoppedEarly(RecordingError):
+    """A recording was stopped by hand before it began."""
+
+    source: str
 
 
 @dataclass(eq=False)

@@ -27,12 +27,18 @@ class LiveTrack:
         self.last: Sample | None = None
         """The sample stepped last; None before the first."""
         self._calibration = calibration
+        self._corrected_anew = False
         self._carry: Quaternion | None = None
         self._settling = 0
         self._turn = single.IDENTITY
         self._increment = np.zeros(3)
         self._force = np.zeros(3)
         self._device = np.zeros(4)
+
+    def recalibrate(self, calibration: Calibration) -> None:
+        """Correct the sensor anew: the next sample begins a run, because the filter has learned the old offset."""
+        self._calibration = calibration
+        self._corrected_anew = self.last is not None
 
     def push(self, sample: Sample) -> bool:
         """Take the next sample; False when it tells nothing about turning, or comes too late to be stepped."""
@@ -42,6 +48,7 @@ class LiveTrack:
         last = self.last
         if (
             last is None
+            or self._corrected_anew
             or sample.epoch != last.epoch
             or (sample.frame - last.frame) * self.info.frame_s > LONGEST_BRIDGE
         ):
@@ -55,7 +62,7 @@ class LiveTrack:
 
     def _begin(self, last: Sample | None, sample: Sample) -> None:
         """Start a new run; its heading is carried over where the device's quaternion tells."""
-        self._carry = None
+        self._carry, self._corrected_anew = None, False
         if last is not None:
             self.run += 1
             gap = (sample.frame - last.frame) * self.info.frame_s

@@ -1,6 +1,7 @@
 """A take that was cut off gets its end. The original goes only when the finished one was read back."""
 
 import contextlib
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -8,12 +9,12 @@ from mcap.opcode import Opcode
 from mcap.records import Header
 
 from studio import __version__
-from studio.core.errors import Damaged, DiskFull, FolderNotWritable, NotATake
+from studio.core.errors import Damaged, DiskFull, FolderNotWritable, NotATake, StudioError
 from studio.storage.block_reader import BlockReader, Record, read_attachment_record
 from studio.storage.blocks import Block, BlockBuilder, RecordFacts, encode
 from studio.storage.encoder import identity_record, schema_records
 from studio.storage.facts import Event, event_json
-from studio.storage.filesystem import FILES, FileSystem, lock
+from studio.storage.filesystem import FILES, FileSystem, is_held, lock
 from studio.storage.ledger import Ledger
 from studio.storage.profile import (
     BALLAST_FILE,
@@ -24,8 +25,11 @@ from studio.storage.profile import (
     PROFILE,
     TAKE_FILE,
 )
+from studio.storage.session_folder import list_takes
 from studio.storage.take_file import NO_ROOM
 from studio.storage.verification import verify
+
+BEGINNING = 60.0  # s in which a recording that has held back its room makes its file; it takes milliseconds
 
 UNFINISHED = "take.recovering.mcap"
 ORIGINAL = "take.damaged.mcap"
@@ -65,6 +69,37 @@ def recover(folder: Path, filesystem: FileSystem = FILES) -> Path:
             raise DiskFull(str(folder), 0.0) from error
         raise FolderNotWritable(str(folder)) from error
     return folder
+
+
+def recover_all(library: Path) -> list[tuple[Path, StudioError | None]]:
+    """Finish all takes of a library whose writer is gone, and return each folder with what stood in the way.
+
+    Room that was held back for a recording which never began or which ended without giving it back is freed.
+    """
+    told: list[tuple[Path, StudioError | None]] = []
+    for take in list_takes(library):
+        if not take.recovered:
+            continue
+        try:
+            recover(take.folder)
+        except StudioError as error:
+            told.append((take.folder, error))
+        else:
+            told.append((take.folder, None))
+    for ballast in library.glob(f"*/*/*/{BALLAST_FILE}"):
+        with contextlib.suppress(OSError):
+            _free(ballast)
+    return told
+
+
+def _free(ballast: Path) -> None:
+    """Remove a left-over file, and its folder when there is nothing else in it."""
+    part = ballast.with_name(PART_FILE)
+    if time.time() - ballast.stat().st_mtime < BEGINNING or (part.exists() and is_held(part)):
+        return
+    ballast.unlink()
+    if not any(ballast.parent.iterdir()):
+        ballast.parent.rmdir()
 
 
 def _finish(reader: BlockReader, folder: Path, filesystem: FileSystem) -> int:

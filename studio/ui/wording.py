@@ -217,6 +217,18 @@ TEMPLATES = _by_id(
     ),
     # Recording
     Message(
+        "rec.running",
+        "A recording is going on already.",
+        "It is being kept in {folder}, and there is only one at a time.",
+        "Stop it, then record the next take.",
+    ),
+    Message(
+        "rec.early",
+        "Nothing was recorded.",
+        "You stopped before any sensor of “{source}” was ready.",
+        "Start again, and wait until the sensors are found.",
+    ),
+    Message(
         "rec.no_room",
         "Recording did not start: the disk is full.",
         "There is no room left in {folder}.",
@@ -332,6 +344,8 @@ MESSAGE_OF: dict[type[StudioError], str | Callable[[Any], str]] = {
     errors.HeadingsUnknown: "cal.heading",
     errors.PlaceTakenTwice: "set.place_twice",
     errors.PersonCodeInvalid: "set.person_code",
+    errors.AlreadyRecording: "rec.running",
+    errors.StoppedEarly: "rec.early",
     errors.DiskFull: lambda error: "rec.disk_full" if error.kept_s > 0 else "rec.no_room",
     errors.FolderNotWritable: "rec.folder",
     errors.VerificationFailed: "rec.verify_fail",

@@ -66,6 +66,15 @@ class BodyHolds:
         """The holds of the whole body, in the order of time."""
         return tuple(sorted(self._whole.values(), key=lambda mark: mark.time))
 
+    def spans(self) -> list[tuple[float, float]]:
+        """Return from when to when a pose of all these was held, s."""
+        repeated = [mark for marks in self._repeated.values() for mark in marks.values()]
+        return [(mark.time, max(mark.end, mark.time)) for mark in (*self._whole.values(), *repeated)]
+
+    def reference_of(self, place: Place) -> Mark | None:
+        """Return the hold that fixed the heading of a limb: its own, where it was repeated alone."""
+        return reference_mark(tuple(self._repeated.get(place, {}).values())) or reference_mark(self.poses)
+
     def clear(self) -> None:
         """Forget all: other sensors, other places."""
         self._whole.clear()
