@@ -1,8 +1,9 @@
 """The solver while samples are coming in."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from bisect import bisect_left
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,10 @@ from studio.core.root import Root
 from studio.core.sample import Quaternion, Sample, SensorId, SensorInfo, Stream
 from studio.core.take import Alignment, Calibration, Setup, Take
 from studio.core.track import SensorTrack
+
+T = TypeVar("T")
+
+EVER = (float("-inf"), float("inf"))  # s
 
 
 class Frame(NamedTuple):
@@ -65,7 +70,7 @@ class Solver:
     ) -> None:
         self._setup = setup
         self._attitude = attitude
-        self._calibrations = calibrations
+        self._calibrations = dict(calibrations)
         self._keep_s = keep_s
         self._tracks: dict[SensorId, LiveTrack] = {}
         self._history: dict[SensorId, _History] = {}
@@ -82,6 +87,53 @@ class Solver:
         self._tracks[info.sensor] = LiveTrack(info, self._attitude, self._calibrations.get(info.sensor))
         self._history[info.sensor] = _History()
 
+    def adopt(self, setup: Setup, arrived: Iterable[Sample]) -> None:
+        """Put another setup in force; other places on the body end the alignment, what each sensor did stays.
+
+        Parameters
+        ----------
+        arrived : iterable of Sample
+            What a take that began now would hold already, in order: its frames are formed as in that take.
+        """
+        same, before = setup.assignment == self._setup.assignment, self._setup.stature
+        self._setup = setup
+        if same:
+            if self._alignment is not None and setup.stature != before:
+                self._root = Root(Skeleton.from_stature(setup.stature))
+            return
+        self._alignment = None
+        self._place_of = {sensor: place for place, sensor in setup.assignment.sensors.items()}
+        self._fresh.clear()
+        stepped = {sensor: set(self._history[sensor].time) for sensor in self._place_of if sensor in self._history}
+        for sample in arrived:
+            if sample.sensor not in stepped:
+                continue
+            if sample.sensor in self._fresh:
+                self._fresh.clear()
+            if sample.time in stepped[sample.sensor]:
+                self._note_fresh(sample)
+            if len(self._fresh) == len(self._place_of):
+                self._fresh.clear()
+
+    def recalibrate(self, calibration: Calibration) -> None:
+        """Correct a sensor from its next sample on; its heading goes on where the device's quaternion tells."""
+        self._calibrations[calibration.sensor] = calibration
+        if calibration.sensor in self._tracks:
+            self._tracks[calibration.sensor].recalibrate(calibration)
+
+    def restart(self, sensor: SensorId, calibration: Calibration | None, arrived: Iterable[Sample]) -> None:
+        """Correct a sensor (None: as it corrects itself) as if it always had been, over what it sent before."""
+        self._calibrations.pop(sensor, None)
+        if calibration is not None:
+            self._calibrations[sensor] = calibration
+        if sensor not in self._tracks:
+            return
+        track = self._tracks[sensor] = LiveTrack(self._tracks[sensor].info, self._attitude, calibration)
+        self._history[sensor] = _History()
+        for sample in arrived:
+            if track.push(sample):
+                self._remember(sample, track)
+
     def push(self, sample: Sample) -> list[Frame]:
         """Take the next sample and return the frames it completes (none, one, rarely two).
 
@@ -97,14 +149,20 @@ class Solver:
             return done
         self._remember(sample, track)
         if worn:
-            self._fresh.add(sample.sensor)
-            self._time = max(self._time, sample.time)
+            self._note_fresh(sample)
             if len(self._fresh) == len(self._place_of):
                 done.append(self._close())
         return done
 
-    def use(self, alignment: Alignment) -> None:
-        """Put an alignment in force: from now on frames become poses."""
+    def use(self, alignment: Alignment, headings: Mapping[Place, Mapping[int, float]] | None = None) -> None:
+        """Put an alignment in force: from now on frames become poses.
+
+        Parameters
+        ----------
+        headings : mapping or None
+            For each limb its heading, rad, by heading group of its track. None: the alignment was found on these
+            tracks, and each limb's group is that of the hold.
+        """
         self._alignment = alignment
         known = [p for p in PLACES if p in alignment.limbs and alignment.limbs[p].source != "unknown"]
         self._known = known
@@ -112,6 +170,8 @@ class Solver:
         self._sensor_from_segment = np.array([alignment.limbs[p].sensor_from_segment for p in known]).reshape(-1, 4)
         self._headings = rotation.about(2, np.array([alignment.limbs[p].heading for p in known]))
         self._groups = {sensor: self._group_at(sensor, alignment.from_s) for sensor in self._sensors}
+        for place, sensor in zip(known, self._sensors, strict=True):
+            self._groups[sensor] = next(iter((headings or {}).get(place, ())), self._groups[sensor])
         self._body = FullBody(known, alignment.pose)
         self._resting = [reference_pose(alignment.pose)[SEGMENT_OF[place]] for place in known]
         self._root = Root(Skeleton.from_stature(self._setup.stature))
@@ -138,9 +198,29 @@ class Solver:
         )
         return Pose(frame.time, world, self._root.step(world, dt), measured)
 
-    def tracks(self) -> dict[SensorId, SensorTrack]:
-        """Return what was estimated so far, for alignment."""
-        return {sensor: self._track(sensor) for sensor in self._tracks}
+    def tracks(
+        self, spans: Sequence[tuple[float, float]] = (EVER,), sensors: Collection[SensorId] | None = None
+    ) -> dict[SensorId, SensorTrack]:
+        """Return what was estimated, of all sensors or of some, for alignment.
+
+        Parameters
+        ----------
+        spans : sequence of (from, to), s
+            Only these stretches are looked at: a minute of 15 sensors takes longer to copy than to align.
+            Sensors that share one world are given without holes, because bending between the holds tells
+            which way the wearer faced.
+        """
+        return {sensor: self._track(sensor, spans) for sensor in (self._tracks if sensors is None else sensors)}
+
+    def newest(self, sensor: SensorId) -> tuple[SensorInfo, int]:
+        """Return what is known of a sensor, and the flags of its last sample."""
+        track = self._tracks[sensor]
+        return track.info, 0 if track.last is None else track.last.flags
+
+    def kept(self) -> float:
+        """Return how far back ``tracks`` reaches, s."""
+        ends = [(h.time[0], h.time[-1]) for h in self._history.values() if h.time]
+        return max((end for _, end in ends), default=0.0) - min((start for start, _ in ends), default=0.0)
 
     def motion(self, frames: Sequence[Frame], notes: tuple[str, ...]) -> Motion:
         """Return the poses of frames as a motion."""
@@ -165,6 +245,10 @@ class Solver:
             attitude=self._attitude,
             notes=notes,
         )
+
+    def _note_fresh(self, sample: Sample) -> None:
+        self._fresh.add(sample.sensor)
+        self._time = max(self._time, sample.time)
 
     def _close(self) -> Frame:
         started = {s: t for s, t in self._tracks.items() if s in self._place_of and t.last is not None}
@@ -191,21 +275,30 @@ class Solver:
 
     def _group_at(self, sensor: SensorId, time: float) -> int:
         history = self._history[sensor]
-        row = int(np.searchsorted(history.time, time))
+        row = bisect_left(history.time, time)
         return history.group[min(row, len(history.group) - 1)] if history.group else 0
 
-    def _track(self, sensor: SensorId) -> SensorTrack:
+    def _track(self, sensor: SensorId, spans: Sequence[tuple[float, float]]) -> SensorTrack:
         live, kept = self._tracks[sensor], self._history[sensor]
+        if live.info.common_world:
+            spans = [(min(start for start, _ in spans), max(end for _, end in spans))]
+        time = np.array(kept.time)
+        rows = np.concatenate([np.flatnonzero((time >= start) & (time <= end)) for start, end in sorted(spans)])
+        chosen = np.unique(rows).tolist()
+
+        def column(values: list[T]) -> list[T]:
+            return [values[row] for row in chosen]
+
         return SensorTrack(
             info=live.info,
             estimator=live.estimator,
-            time=np.array(kept.time),
-            attitude=np.array(kept.attitude).reshape(-1, 4),
-            device=np.array(kept.device).reshape(-1, 4),
-            speed=np.array(kept.speed),
-            lost=np.zeros(len(kept.time), bool),
-            run=np.array(kept.run, np.int32),
-            group=np.array(kept.group, np.int32),
+            time=time[chosen],
+            attitude=np.array(column(kept.attitude)).reshape(-1, 4),
+            device=np.array(column(kept.device)).reshape(-1, 4),
+            speed=np.array(column(kept.speed)),
+            lost=np.zeros(len(chosen), bool),
+            run=np.array(column(kept.run), np.int32),
+            group=np.array(column(kept.group), np.int32),
             offset=np.zeros(3),
             offset_sigma=float("nan"),
         )
