@@ -14,7 +14,7 @@ from studio.core import rotation
 from studio.core.body import Place
 from studio.core.errors import AlreadyRecording, HeadingsUnknown, MovedDuringHold, NoData, PortGone
 from studio.core.sample import Correction
-from studio.core.take import Assignment, Calibration
+from studio.core.take import Assignment, Calibration, CarriedAlignment
 from studio.storage.take_reader import read_events, read_take
 from tests.capture.known_suit import (
     LOWER,
@@ -271,6 +271,12 @@ def test_a_recording_that_cannot_start_leaves_the_way_free_for_the_next(tmp_path
     run(story())
 
 
+def carried_of(folder) -> CarriedAlignment:
+    carried = read_take(folder)[0].setup.carried
+    assert carried is not None
+    return carried
+
+
 async def aligned(session, link, pieces):
     """Let the wearer stand and bow."""
     await link.give(between(pieces, 1, 8.5))
@@ -280,7 +286,7 @@ async def aligned(session, link, pieces):
 
 
 def test_a_limb_that_moved_is_named_and_repeated_alone():
-    take, truth = restless_take()
+    take, _ = restless_take()
     pieces = told(take)
 
     async def story():
@@ -419,7 +425,7 @@ def test_a_take_begun_after_the_holds_knows_how_each_sensor_was_turned_at_its_fi
         folder = (await session.stop_recording()).folder
         kept, _ = read_take(folder)
 
-        carried = kept.setup.carried
+        carried = carried_of(folder)
         first = int(np.searchsorted(take.streams[0].time, begun - 2.0 - 0.021))
         rows = [first, first + 1, first + 2]
         assert carried.time == 0.0
@@ -470,11 +476,10 @@ def test_a_sensor_silent_when_the_take_begins_carries_no_attitude(tmp_path, legs
         await aligned(session, link, pieces)
         await link.give([one for one in between(pieces, 8.5, 14) if one[1].info.sensor != silent])
         await start(session, tmp_path)
-        folder = (await session.stop_recording()).folder
-        kept, _ = read_take(folder)
+        carried = carried_of((await session.stop_recording()).folder)
 
-        assert set(kept.setup.carried.wearer_from_sensor) == set(LOWER) - {Place.LEFT_FOOT}
-        assert set(kept.setup.carried.alignment.limbs) == set(LOWER)
+        assert set(carried.wearer_from_sensor) == set(LOWER) - {Place.LEFT_FOOT}
+        assert set(carried.alignment.limbs) == set(LOWER)
         await session.disconnect()
 
     run(story())
@@ -496,9 +501,9 @@ def test_a_sensor_that_started_anew_since_the_hold_carries_no_attitude(tmp_path,
         await aligned(session, link, pieces)
         await link.give([restarted(one) for one in between(pieces, 8.5, 14)])
         await start(session, tmp_path)
-        folder = (await session.stop_recording()).folder
+        carried = carried_of((await session.stop_recording()).folder)
 
-        assert set(read_take(folder)[0].setup.carried.wearer_from_sensor) == set(LOWER) - {Place.LEFT_FOOT}
+        assert set(carried.wearer_from_sensor) == set(LOWER) - {Place.LEFT_FOOT}
         await session.disconnect()
 
     run(story())
