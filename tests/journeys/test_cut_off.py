@@ -115,20 +115,59 @@ def test_twenty_kills(tmp_path):
     kill_some(tmp_path, np.random.default_rng(2027).uniform(0.2, POSED_BY, 20).tolist())
 
 
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT], ids=lambda number: number.name)
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT, signal.SIGHUP], ids=lambda number: number.name)
 def test_a_polite_end_finishes_the_take(tmp_path, number):
-    """SIGINT is Ctrl+C."""
+    """SIGINT is Ctrl+C, SIGHUP a terminal that was closed."""
     with start_recording(tmp_path) as child:
         wait_for_file(tmp_path, child)
         threading.Event().wait(0.5)
         os.kill(child.pid, number)
         out, err = child.communicate(timeout=PATIENCE)
 
-    assert (child.returncode, err) == (0, "")
     (listed,) = list_takes(tmp_path)
-    assert out == f"{listed.folder}\n"
+    assert (child.returncode, out) == (0, f"{listed.folder}\n")
     take, report = read_take(listed.folder)
+    assert err.splitlines() == [
+        "15 sensors found. Recording…",
+        f"Saved: {take.duration():.1f} s, 15 sensors, 0.00% lost.",
+    ]
     assert not listed.recovered
     assert (report.finished, report.recovered, report.damaged) == (True, False, 0)
     assert 0.4 < take.duration() < 10
     assert len(take.streams) == 15
+
+
+def test_ctrl_c_before_any_sensor_ends_at_once_in_one_sentence(tmp_path):
+    master, slave = os.openpty()
+    command = [sys.executable, "-m", "studio", "record", "--source", f"serial:{os.ttyname(slave)}"]
+    with subprocess.Popen(
+        [*command, "--library", str(tmp_path)], cwd=ROOT, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    ) as child:
+        os.read(master, 1)  # the receiver is asked who it is: the port is open
+        os.kill(child.pid, signal.SIGINT)
+        out, err = child.communicate(timeout=PATIENCE)
+    os.close(master)
+    os.close(slave)
+
+    assert (child.returncode, out) == (1, "")
+    assert err.startswith("Nothing was recorded. ")
+    assert err.count("\n") == 1
+    assert list_takes(tmp_path) == []
+
+
+def test_a_take_that_was_cut_off_gets_its_end_when_the_next_is_kept(tmp_path):
+    killed = kill(tmp_path, 0.5)
+    (cut,) = list_takes(killed.library)
+    before, _ = read_take(cut.folder)
+
+    told = say("record", "--source", "synthetic:walk?tags=2&speed=max", "--seconds", 1, "--library", tmp_path)
+    again = say("record", "--source", "synthetic:walk?tags=2&speed=max", "--seconds", 1, "--library", tmp_path)
+
+    assert (told.code, again.code) == (0, 0)
+    assert told.out.count("\n") == 1
+    assert f"what was safe by then is in {cut.folder}" in told.err
+    assert str(cut.folder) not in again.err
+    after, report = read_take(cut.folder)
+    assert (report.finished, report.recovered) == (True, True)
+    assert [len(stream) for stream in after.streams] == [len(stream) for stream in before.streams]
+    assert not list(tmp_path.glob("**/.ballast"))

@@ -54,13 +54,15 @@ def samples(frames: int, tags: int = 15) -> list[Sample]:
     return [sample(sensor, frame) for frame in range(frames) for sensor in TAGS[:tags]]
 
 
-def start_writing(library: Path, filesystem: FileSystem = FILES, name: str = "walk", tags: int = 15) -> TakeWriter:
+def start_writing(
+    library: Path, filesystem: FileSystem = FILES, name: str = "walk", tags: int = 15, setup: Setup = SETUP
+) -> TakeWriter:
     writer = TakeWriter(
         open_session(library, "P014", DAY),
         name,
         person="P014",
         source="synthetic:walk?seed=1",
-        setup=SETUP,
+        setup=setup,
         versions={"studio": "0.1.0", "protocol": "1"},
         anchor=Anchor("2026-11-24T10:00:00+00:00", START),
         filesystem=filesystem,

@@ -10,7 +10,7 @@ import pytest
 from studio.core.body import Place
 from studio.core.errors import CalibrationUnreadable, FolderNotWritable, PersonCodeInvalid, WrittenByNewerStudio
 from studio.core.sample import Correction
-from studio.core.take import Assignment, Calibration, Mark, Setup
+from studio.core.take import Alignment, Assignment, Calibration, CarriedAlignment, LimbAlignment, Mark, Setup
 from studio.storage.person_file import Person, load_person, person_schema, save_person
 from studio.storage.tag_file import Tag, add_calibration, load_tag, read_calibration, save_tag, write_calibration
 from studio.storage.take_json import Edit, TakeDocument, document_schema, save_document
@@ -48,6 +48,21 @@ def test_what_people_say_about_a_take_is_applied_and_the_recording_stays(folder:
     assert take.setup.calibrations[0].correction == CALIBRATION.correction
     assert take.marks[0].label == "turn"
     assert (folder / "take.mcap").read_bytes() == recorded
+
+
+def test_a_body_calibration_from_before_the_take_comes_back_as_it_was(folder: Path, tmp_path: Path) -> None:
+    third = 1 / 3**0.5
+    limb = LimbAlignment((0.5, -0.5, 0.5, 0.5), -1 / 3, "bow", 1 / 7, 1 / 9)
+    carried = CarriedAlignment(
+        Alignment("n", -12.5, -9.5, {Place.PELVIS: limb}), 0.0, {Place.PELVIS: (0.0, third, -third, third)}
+    )
+    setup = replace(SETUP, carried=carried)
+    writer = start_writing(tmp_path / "other", setup=setup)
+    recorded, _ = read_take(writer.stop().result(30).folder)
+    save_document(folder, TakeDocument(name="walk", setup=setup))
+
+    assert recorded.setup.carried == carried
+    assert read_take(folder)[0].setup.carried == carried
 
 
 @pytest.mark.parametrize(
@@ -101,7 +116,8 @@ def test_a_take_json_of_a_newer_studio_is_left_alone(folder: Path) -> None:
 def test_the_published_schemas_are_the_ones_in_use(folder: Path, tmp_path: Path) -> None:
     take_schema = json.loads((RESOURCES / "take.schema.json").read_text())
     person_json_schema = json.loads((RESOURCES / "person.schema.json").read_text())
-    setup = replace(SETUP, calibrations=(CALIBRATION,))
+    carried = CarriedAlignment(Alignment("n", -9.0, -6.0, {}), 0.0, {Place.PELVIS: (1.0, 0.0, 0.0, 0.0)})
+    setup = replace(SETUP, calibrations=(CALIBRATION,), carried=carried)
     save_document(folder, TakeDocument(marks=(Mark(1.0, "marker"),), edits=(Edit("trim", {"to": 2.0}),), setup=setup))
     save_person(tmp_path, "P014", Person(stature=1.7, assignment=SETUP.assignment))
 

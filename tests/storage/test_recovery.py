@@ -1,5 +1,7 @@
 """A take that was cut off gets its end; the original goes only when nothing of it is lost."""
 
+import os
+import time
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +10,7 @@ from mcap.reader import make_reader
 
 from studio.core.errors import Damaged, DiskFull, FolderNotWritable, NotATake
 from studio.core.take import Mark
-from studio.storage.recovery import recover
+from studio.storage.recovery import BEGINNING, recover, recover_all
 from studio.storage.session_folder import list_takes
 from studio.storage.take_reader import read_attachment, read_events, read_take
 from tests.storage.disks import FullDisk
@@ -114,3 +116,44 @@ def test_a_finished_take_is_left_as_it_is(tmp_path: Path) -> None:
 
     assert recover(folder) == folder
     assert (folder / "take.mcap").read_bytes() == content
+
+
+def test_all_takes_whose_writer_is_gone_are_finished_and_told_once(tmp_path: Path) -> None:
+    first, whole = cut_off(tmp_path, 1.0)
+    (first / "take.part.mcap").write_bytes(whole[: int(end_of_data(whole) * len(whole))])
+    second, part = cut_off(tmp_path, 0.9)
+    (second / "take.part.mcap").write_bytes(part[: part.index(b"kinetag.take/1", 100)])
+    running = start_writing(tmp_path)
+
+    told = recover_all(tmp_path)
+
+    assert [(folder, type(error)) for folder, error in told] == [(first, type(None)), (second, Damaged)]
+    assert [folder for folder, _ in recover_all(tmp_path)] == [second]
+    assert running.stop().result(30).verified
+
+
+def aged(ballast: Path, seconds: float) -> Path:
+    ballast.parent.mkdir(parents=True, exist_ok=True)
+    ballast.write_bytes(b"room")
+    then = time.time() - seconds
+    os.utime(ballast, (then, then))
+    return ballast
+
+
+def test_room_that_nobody_holds_back_any_more_is_freed(tmp_path: Path) -> None:
+    session = tmp_path / "P014" / "2026-11-24a"
+    finished = start_writing(tmp_path).stop().result(30).folder
+    never_begun = aged(session / "take-007" / ".ballast", BEGINNING + 1)
+    beginning = aged(session / "take-008" / ".ballast", BEGINNING - 10)
+    left_over = aged(finished / ".ballast", BEGINNING + 1)
+    running = start_writing(tmp_path)
+    held = aged(running.folder / ".ballast", BEGINNING + 1)
+
+    assert recover_all(tmp_path) == []
+
+    assert not never_begun.parent.exists()
+    assert beginning.exists()
+    assert not left_over.exists()
+    assert (finished / "take.mcap").exists()
+    assert held.exists()
+    assert running.stop().result(30).verified
