@@ -10,25 +10,21 @@ fact is "the heading is already right"; its two-sided form is
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from studio.core import rotation
 from studio.core.body import REFERENCE_POSES, SEGMENT_OF, Place, reference_pose
-from studio.core.errors import HeadingsUnknown, MovedDuringHold, NoSensorWorn, PoseMissing, PoseTooShort
+from studio.core.errors import AlignmentError, HeadingsUnknown, MovedDuringHold, NoSensorWorn, PoseMissing, PoseTooShort
 from studio.core.facing import facing_from_hinges
 from studio.core.frames import UP
+from studio.core.hold import Hold, hold_all
 from studio.core.sample import Quaternion, SensorId
 from studio.core.strapping import STRAP_SIGMA, strap_rule
 from studio.core.take import Alignment, Assignment, HeadingSource, LimbAlignment, Mark, Mounting, PoseName
 from studio.core.track import SensorTrack
 
-STILLEST = 1.0  # s of the hold that decide
-SWAY_RANGE = math.radians(1.5)  # around the stillest second; a standing person sways with an SD of 0.5°
-LARGEST_DEVIATION = math.radians(3.0)  # from the mean during that second
-LARGEST_SPEED = math.radians(10.0)  # rad/s, root mean square during that second
 SMALLEST_BOW = math.radians(20.0)  # of tilt between the holds
 BOW_AXIS_SIGMA = math.radians(1.5)  # joints are no perfect hinges: the bow itself is not purely sagittal
 TILT_SIGMA = math.radians(0.5)  # accelerometer of 5-10 mg
@@ -57,28 +53,6 @@ _POSE_NAMES: dict[str, PoseName] = {"n": "n", "t": "t", "sit": "sit"}
 Tracks = Mapping[SensorId, SensorTrack]
 
 
-@dataclass(frozen=True)
-class Hold:
-    """One sensor while a pose was held."""
-
-    attitude: NDArray[np.float64]
-    """(4,), world_from_sensor, Markley's mean over the stillest second."""
-    device: NDArray[np.float64]
-    """(4,), what the device said meanwhile; NaN when nothing."""
-    spread: float
-    """rad, root mean square deviation from the mean."""
-    largest: float
-    """rad, largest deviation from the mean."""
-    speed: float
-    """rad/s, root mean square."""
-    group: int
-    """Heading group of the track."""
-
-    def up(self) -> NDArray[np.float64]:
-        """Return the upward direction (3,) in sensor axes."""
-        return rotation.rotate(rotation.inverse(self.attitude), UP)
-
-
 def align(
     tracks: Tracks, assignment: Assignment, poses: Sequence[Mark], mounting: Mounting, take_s: float
 ) -> Alignment:
@@ -87,32 +61,26 @@ def align(
     Parameters
     ----------
     poses : sequence of Mark
-        Kind ``pose``, labels ``n``, ``t``, ``sit``, ``bow``; the first ``n``, else ``t``, else ``sit`` is the
-        reference.
+        Kind ``pose``, labels ``n``, ``t``, ``sit``, ``bow``. The reference is the first ``n`` in which nobody
+        moved, else the first such ``t``, else ``sit``. Of other holds, each limb takes the last in which it was
+        as still.
     take_s : float, s
         Length of the take, for the messages.
 
     Raises
     ------
     NoSensorWorn, PoseMissing, PoseTooShort, MovedDuringHold
-        HeadingsUnknown is not raised here: a limb without heading is ``unknown`` (see ``require_headings``).
+        No reference can be used; this is what was wrong with the last. HeadingsUnknown is not raised here: a
+        limb without heading is ``unknown`` (see ``require_headings``).
     """
     worn = {place: tracks[sensor] for place, sensor in assignment.sensors.items() if sensor in tracks}
     if not worn:
         raise NoSensorWorn(len(tracks))
-    reference = reference_mark(poses)
-    if reference is None:
-        raise PoseMissing(take_s)
+    reference, first = _usable_reference(worn, poses, take_s)
     pose = _POSE_NAMES[reference.label]
-    first = hold_all(worn, reference, take_s)
-    moved = {p: h for p, h in first.items() if h.largest > LARGEST_DEVIATION or h.speed > LARGEST_SPEED}
-    if moved:
-        degrees = tuple(round(math.degrees(hold.largest), 1) for hold in moved.values())
-        raise MovedDuringHold(reference.label, tuple(place.value for place in moved), degrees)
     others = {
-        label: hold_all(worn, mark, take_s, required=False)
+        label: _usable_holds(worn, label, [mark for mark in poses if mark is not reference], take_s)
         for label in ("bow", *REFERENCE_POSES)
-        if (mark := _last(poses, label, reference)) is not None
     }
     facing = _common_facing(worn, first, reference)
     # Who was silent during the hold has no heading.
@@ -131,79 +99,64 @@ def require_headings(alignment: Alignment) -> None:
 
 
 def reference_mark(poses: Sequence[Mark]) -> Mark | None:
-    """Return the hold that fixes the body: the first N-pose, else T-pose, else sitting."""
-    for label in REFERENCE_POSES:
-        for mark in poses:
-            if mark.label == label:
-                return mark
-    return None
+    """Return the hold that fixes the body if nobody moved in it: the first N-pose, else T-pose, else sitting."""
+    return next(iter(_reference_marks(poses)), None)
 
 
-def _last(poses: Sequence[Mark], label: str, reference: Mark) -> Mark | None:
-    found = [mark for mark in poses if mark.label == label and mark is not reference]
-    return found[-1] if found else None
+def _reference_marks(poses: Sequence[Mark]) -> list[Mark]:
+    return [mark for label in REFERENCE_POSES for mark in poses if mark.label == label]
 
 
-def hold_all(
-    worn: Mapping[Place, SensorTrack], mark: Mark, take_s: float, *, required: bool = True
-) -> dict[Place, Hold]:
-    """Return each place's hold over the second in which the whole body was stillest."""
-    start = stillest_second(list(worn.values()), mark)
-    holds: dict[Place, Hold] = {}
-    for place, track in worn.items():
-        rows = track.rows(start, min(start + STILLEST, max(mark.end, mark.time)))
-        if len(rows) == 0 and mark.end - mark.time < STILLEST:
-            rows = _nearest(track, mark.time)
-        if len(rows) == 0 or len(set(track.group[rows].tolist())) != 1:
+def _usable_reference(
+    worn: Mapping[Place, SensorTrack], poses: Sequence[Mark], take_s: float
+) -> tuple[Mark, dict[Place, Hold]]:
+    """Return the first reference in which no limb moved: whoever was refused holds the pose again."""
+    refusal: AlignmentError = PoseMissing(take_s)
+    for mark in _reference_marks(poses):
+        try:
+            holds = hold_all(worn, mark, take_s)
+        except PoseTooShort as too_short:
+            refusal = too_short
             continue
-        whole = track.rows(mark.time, max(mark.end, mark.time))
-        holds[place] = _hold(track, rows, whole[track.group[whole] == track.group[rows[0]]])
-    if required and not holds:
-        raise PoseTooShort(mark.label, mark.time, mark.end, take_s)
-    return holds
+        moved = _moved(holds)
+        if not moved:
+            return mark, holds
+        refusal = MovedDuringHold(mark.label, tuple(place.value for place in moved), tuple(moved.values()))
+    raise refusal
 
 
-def _nearest(track: SensorTrack, time: float) -> NDArray[np.intp]:
-    """Return the one frame next to an instant: a pose given as a single moment."""
-    if len(track.time) == 0:
-        return np.array([], np.intp)
-    row = int(np.argmin(np.abs(track.time - time)))
-    near = abs(track.time[row] - time) <= 2 * track.info.frame_s
-    return np.array([row] if near else [], np.intp)
+def _usable_holds(
+    worn: Mapping[Place, SensorTrack], label: str, poses: Sequence[Mark], take_s: float
+) -> dict[Place, Hold]:
+    """Return for each limb the last hold of a pose in which it kept still."""
+    usable: dict[Place, Hold] = {}
+    for mark in poses:
+        if mark.label == label:
+            holds = hold_all(worn, mark, take_s, required=False)
+            usable |= {place: hold for place, hold in holds.items() if hold.is_still()}
+    return usable
 
 
-def stillest_second(tracks: Sequence[SensorTrack], mark: Mark) -> float:
-    """Return the start of the second of a hold in which all sensors together turned least, s."""
-    latest = mark.end - STILLEST
-    if not latest > mark.time:
-        return mark.time
-    starts = np.linspace(mark.time, latest, max(2, round((latest - mark.time) / 0.1) + 1))
-    cost = np.zeros(len(starts))
-    for track in tracks:
-        energy = np.concatenate([[0.0], np.cumsum(track.speed**2)])
-        a, b = np.searchsorted(track.time, starts), np.searchsorted(track.time, starts + STILLEST)
-        cost += (energy[b] - energy[a]) / np.maximum(b - a, 1)
-    return float(starts[int(np.argmin(cost))])
+def refused_holds(
+    tracks: Tracks, assignment: Assignment, poses: Sequence[Mark], alignment: Alignment, take_s: float
+) -> tuple[MovedDuringHold, ...]:
+    """Return the holds that might have told the heading of a limb that has none, had it not moved in them."""
+    worn = {place: tracks[sensor] for place, sensor in assignment.sensors.items() if sensor in tracks}
+    unknown = {place for place, limb in alignment.limbs.items() if limb.source == "unknown"}
+    refused = []
+    for mark in poses:
+        if unknown and (mark.time, mark.label) != (alignment.from_s, alignment.pose):
+            holds = hold_all(worn, mark, take_s, required=False)
+            moved = _moved({place: hold for place, hold in holds.items() if place in unknown})
+            if moved:
+                names = tuple(place.value for place in moved)
+                refused.append(MovedDuringHold(mark.label, names, tuple(moved.values())))
+    return tuple(refused)
 
 
-def _hold(track: SensorTrack, still: NDArray[np.intp], whole: NDArray[np.intp]) -> Hold:
-    """Return one sensor's hold: the stillest second decides, and what agrees with it is averaged in."""
-    centre = rotation.mean(track.attitude[still])
-    deviation = rotation.angle_between(centre, track.attitude[still])
-    # Sway wanders within a second; three seconds of it average to half (biomechanics-and-formats §3).
-    agreeing = whole[rotation.angle_between(centre, track.attitude[whole]) <= SWAY_RANGE]
-    rows = agreeing if len(agreeing) > len(still) else still
-    attitude = rotation.mean(track.attitude[rows])
-    device = track.device[rows]
-    known = np.isfinite(device).all(axis=1)
-    return Hold(
-        attitude=attitude,
-        device=rotation.mean(device[known]) if known.any() else np.full(4, np.nan),
-        spread=float(np.sqrt(np.mean(rotation.angle_between(attitude, track.attitude[rows]) ** 2))),
-        largest=float(deviation.max()),
-        speed=float(np.sqrt(np.mean(track.speed[still] ** 2))) if len(still) > 1 else 0.0,
-        group=int(track.group[still[0]]),
-    )
+def _moved(holds: Mapping[Place, Hold]) -> dict[Place, float]:
+    """Return by how many degrees the limbs moved that were not still."""
+    return {place: round(math.degrees(hold.largest), 1) for place, hold in holds.items() if not hold.is_still()}
 
 
 def _common_facing(

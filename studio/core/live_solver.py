@@ -1,65 +1,36 @@
 """The solver while samples are coming in."""
 
-from bisect import bisect_left
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from studio.core import rotation
-from studio.core.body import PLACES, SEGMENT_OF, Place, Skeleton, reference_pose
+from studio.core.body import PLACES, SEGMENT_OF, Skeleton, reference_pose
 from studio.core.full_body import FullBody
+from studio.core.headings import GroupHeadings, headings_of
+from studio.core.live_frames import Frame, FrameBlock, FrameLog, Pose, Rows
 from studio.core.live_track import LiveTrack
 from studio.core.pose import Motion
-from studio.core.root import Root
-from studio.core.sample import Quaternion, Sample, SensorId, SensorInfo, Stream
+from studio.core.root import Root, put_under_hold
+from studio.core.runs import longest_bridge
+from studio.core.sample import Flag, Sample, SensorId, SensorInfo, Stream
 from studio.core.take import Alignment, Calibration, Setup, Take
 from studio.core.track import SensorTrack
 
-T = TypeVar("T")
-
 EVER = (float("-inf"), float("inf"))  # s
+CHUNK = 4096  # frames at a time: the working set stays in the cache
+FORGOTTEN_AT_ONCE = 1024  # rows of a sensor; shifting what is kept costs more than keeping
 
 
-class Frame(NamedTuple):
-    """All worn sensors at one moment: one step of the solver."""
+class _Headings(NamedTuple):
+    """The headings in force, ready to be looked up by group."""
 
-    time: float
-    """s, of the newest sample."""
-    attitudes: dict[SensorId, Quaternion]
-    """world_from_sensor as far as each sensor got."""
-    fresh: frozenset[SensorId]
-    """Those that sent a sample in this frame."""
-    groups: dict[SensorId, int]
-    """Heading group of each sensor."""
-
-
-class Pose(NamedTuple):
-    """The body at one moment."""
-
-    time: float
-    world_from_segment: NDArray[np.float64]
-    """(23, 4)."""
-    hips: NDArray[np.float64]
-    """(3,), m, world."""
-    measured: frozenset[Place]
-    """Places whose sensor sent in this frame and whose heading is known."""
-
-
-@dataclass
-class _History:
-    time: list[float] = field(default_factory=list)
-    attitude: list[Quaternion] = field(default_factory=list)
-    device: list[Quaternion] = field(default_factory=list)
-    speed: list[float] = field(default_factory=list)
-    run: list[int] = field(default_factory=list)
-    group: list[int] = field(default_factory=list)
-
-    def forget_before(self, row: int) -> None:
-        for values in (self.time, self.attitude, self.device, self.speed, self.run, self.group):
-            del values[:row]
+    turns: NDArray[np.float64]
+    """(sensors, groups + 1, 4); where a heading is unknown a known one stands in, and so in the last column."""
+    known: NDArray[np.bool_]
+    """(sensors, groups + 1)."""
 
 
 class Solver:
@@ -73,10 +44,12 @@ class Solver:
         self._calibrations = dict(calibrations)
         self._keep_s = keep_s
         self._tracks: dict[SensorId, LiveTrack] = {}
-        self._history: dict[SensorId, _History] = {}
+        self._history: dict[SensorId, Rows] = {}
         self._place_of = {sensor: place for place, sensor in setup.assignment.sensors.items()}
         self._fresh: set[SensorId] = set()
-        self._time = 0.0
+        self._heard: dict[SensorId, float] = {}
+        self._time = float("-inf")
+        self._closed = float("-inf")
         self._alignment: Alignment | None = None
 
     def add_sensor(self, info: SensorInfo) -> None:
@@ -85,7 +58,7 @@ class Solver:
             self._tracks[info.sensor].info = info
             return
         self._tracks[info.sensor] = LiveTrack(info, self._attitude, self._calibrations.get(info.sensor))
-        self._history[info.sensor] = _History()
+        self._history[info.sensor] = Rows(12)
 
     def adopt(self, setup: Setup, arrived: Iterable[Sample]) -> None:
         """Put another setup in force; other places on the body end the alignment, what each sensor did stays.
@@ -104,16 +77,16 @@ class Solver:
         self._alignment = None
         self._place_of = {sensor: place for place, sensor in setup.assignment.sensors.items()}
         self._fresh.clear()
-        stepped = {sensor: set(self._history[sensor].time) for sensor in self._place_of if sensor in self._history}
+        stepped = {
+            sensor: set(self._history[sensor].values()[:, 0].tolist())
+            for sensor in self._place_of
+            if sensor in self._history
+        }
         for sample in arrived:
             if sample.sensor not in stepped:
                 continue
-            if sample.sensor in self._fresh:
-                self._fresh.clear()
-            if sample.time in stepped[sample.sensor]:
-                self._note_fresh(sample)
-            if len(self._fresh) == len(self._place_of):
-                self._fresh.clear()
+            if sample.time in stepped[sample.sensor] or sample.flags & Flag.FILLED:
+                self._hear(sample)
 
     def recalibrate(self, calibration: Calibration) -> None:
         """Correct a sensor from its next sample on; its heading goes on where the device's quaternion tells."""
@@ -129,7 +102,7 @@ class Solver:
         if sensor not in self._tracks:
             return
         track = self._tracks[sensor] = LiveTrack(self._tracks[sensor].info, self._attitude, calibration)
-        self._history[sensor] = _History()
+        self._history[sensor] = Rows(12)
         for sample in arrived:
             if track.push(sample):
                 self._remember(sample, track)
@@ -141,39 +114,35 @@ class Solver:
         the samples and their order alone, so that a replay forms the very same frames.
         """
         track = self._tracks[sample.sensor]
-        done: list[Frame] = []
         worn = sample.sensor in self._place_of
-        if worn and sample.sensor in self._fresh:
-            done.append(self._close())
-        if not track.push(sample):
-            return done
+        if not track.accepts(sample):
+            return self._hear(sample) if worn and track.is_heard(sample) else []
+        # The frame is closed before the sample is stepped: that belongs to the next one.
+        done = self._close() if sample.sensor in self._fresh else []
+        track.push(sample)
         self._remember(sample, track)
-        if worn:
-            self._note_fresh(sample)
-            if len(self._fresh) == len(self._place_of):
-                done.append(self._close())
-        return done
+        return [*done, *self._hear(sample)] if worn else done
 
-    def use(self, alignment: Alignment, headings: Mapping[Place, Mapping[int, float]] | None = None) -> None:
+    def use(self, alignment: Alignment, headings: GroupHeadings | None = None) -> None:
         """Put an alignment in force: from now on frames become poses.
 
         Parameters
         ----------
         headings : mapping or None
-            For each limb its heading, rad, by heading group of its track. None: the alignment was found on these
-            tracks, and each limb's group is that of the hold.
+            What ``headings_of`` tells of this solver's own tracks. None: those of the alignment, which was found
+            on these tracks and whose hold is among them.
         """
+        if headings is None:
+            worn = {p: self._track(s, (EVER,)) for s, p in self._place_of.items() if s in self._tracks}
+            headings = headings_of(worn, alignment, (), 0.0)
         self._alignment = alignment
-        known = [p for p in PLACES if p in alignment.limbs and alignment.limbs[p].source != "unknown"]
-        self._known = known
-        self._sensors = [self._setup.assignment.sensors[place] for place in known]
-        self._sensor_from_segment = np.array([alignment.limbs[p].sensor_from_segment for p in known]).reshape(-1, 4)
-        self._headings = rotation.about(2, np.array([alignment.limbs[p].heading for p in known]))
-        self._groups = {sensor: self._group_at(sensor, alignment.from_s) for sensor in self._sensors}
-        for place, sensor in zip(known, self._sensors, strict=True):
-            self._groups[sensor] = next(iter((headings or {}).get(place, ())), self._groups[sensor])
-        self._body = FullBody(known, alignment.pose)
-        self._resting = [reference_pose(alignment.pose)[SEGMENT_OF[place]] for place in known]
+        self._known = [place for place in PLACES if headings.get(place)]
+        self._sensors = [self._setup.assignment.sensors[place] for place in self._known]
+        limbs = [alignment.limbs[place] for place in self._known]
+        self._sensor_from_segment = np.array([limb.sensor_from_segment for limb in limbs]).reshape(-1, 4)
+        self._headings = _look_up([headings[place] for place in self._known])
+        self._body = FullBody(self._known, alignment.pose)
+        self._resting = reference_pose(alignment.pose)[[SEGMENT_OF[place] for place in self._known]]
         self._root = Root(Skeleton.from_stature(self._setup.stature))
         self._last_time: float | None = None
 
@@ -181,22 +150,13 @@ class Solver:
         """Return the body at a frame; None before there is an alignment. Frames must come in order."""
         if self._alignment is None:
             return None
-        attitudes = np.empty((len(self._sensors), 4))
-        for row, sensor in enumerate(self._sensors):
-            attitudes[row] = frame.attitudes.get(sensor, (np.nan,) * 4)
-        segments = rotation.multiply(rotation.multiply(self._headings, attitudes), self._sensor_from_segment)
-        for row, sensor in enumerate(self._sensors):
-            if sensor not in frame.attitudes:  # it has not sent anything yet: shown as in the held pose
-                segments[row] = self._resting[row]
-        world = self._body.complete(segments)
-        dt = 0.0 if self._last_time is None else frame.time - self._last_time
-        self._last_time = frame.time
-        measured = frozenset(
-            place
-            for place, sensor in zip(self._known, self._sensors, strict=True)
-            if sensor in frame.fresh and frame.groups[sensor] == self._groups[sensor]
-        )
-        return Pose(frame.time, world, self._root.step(world, dt), measured)
+        log = FrameLog(self._sensors)
+        log.extend([frame])
+        (block,) = log.blocks(self._sensors, 1)
+        world, hips, known = self._bodies(block)
+        is_heard = known[0] & (frame.time - block.heard[0] <= longest_bridge(self._frame_s()))
+        measured = frozenset(place for place, there in zip(self._known, is_heard.tolist(), strict=True) if there)
+        return Pose(frame.time, world[0], hips[0], measured)
 
     def tracks(
         self, spans: Sequence[tuple[float, float]] = (EVER,), sensors: Collection[SensorId] | None = None
@@ -219,96 +179,142 @@ class Solver:
 
     def kept(self) -> float:
         """Return how far back ``tracks`` reaches, s."""
-        ends = [(h.time[0], h.time[-1]) for h in self._history.values() if h.time]
-        return max((end for _, end in ends), default=0.0) - min((start for start, _ in ends), default=0.0)
+        times = [history.values()[:, 0] for history in self._history.values() if len(history)]
+        return float(max((t[-1] for t in times), default=0.0) - min((t[0] for t in times), default=0.0))
 
-    def motion(self, frames: Sequence[Frame], notes: tuple[str, ...]) -> Motion:
-        """Return the poses of frames as a motion."""
+    def motion(self, frames: FrameLog, notes: tuple[str, ...]) -> Motion:
+        """Return the poses of all frames as a motion, its origin under the reference hold."""
         if self._alignment is None:
             raise ValueError("no alignment is in force")
-        poses = [pose for frame in frames if (pose := self.pose(frame)) is not None]
+        count = len(frames)
+        time, world, hips = np.empty(count), np.empty((count, 23, 4)), np.empty((count, 3))
+        known, heard = np.zeros((count, len(self._known)), bool), np.empty((count, len(self._known)))
+        row = 0
+        for block in frames.blocks(self._sensors, CHUNK):
+            part = slice(row, row + len(block.time))
+            time[part], heard[part] = block.time, block.heard
+            world[part], hips[part], known[part] = self._bodies(block)
+            row = part.stop
+        put_under_hold(hips, time, self._alignment)
         places = [place for place in PLACES if place in self._alignment.limbs]
-        fresh = {
-            place: np.array([self._setup.assignment.sensors[place] in f.fresh for f in frames], bool)
-            for place in places
-        }
+        measured, lost = ({place: np.full(count, value) for place in places} for value in (False, True))
+        for column, place in enumerate(self._known):
+            fresh, bridged = _coverage(heard[:, column], self._frame_s())
+            measured[place], lost[place] = known[:, column] & bridged, ~fresh
         return Motion(
-            time=np.array([pose.time for pose in poses]),
-            frame_s=min(self._tracks[sensor].info.frame_s for sensor in self._place_of if sensor in self._tracks),
-            world_from_segment=np.array([pose.world_from_segment for pose in poses]).reshape(-1, 23, 4),
-            hips=np.array([pose.hips for pose in poses]).reshape(-1, 3),
+            time=time,
+            frame_s=self._frame_s(),
+            world_from_segment=world,
+            hips=hips,
             skeleton=Skeleton.from_stature(self._setup.stature),
-            measured={place: np.array([place in pose.measured for pose in poses], bool) for place in places},
-            lost={place: ~fresh[place] for place in places},
+            measured=measured,
+            lost=lost,
             alignment=self._alignment,
             method="live",
             attitude=self._attitude,
             notes=notes,
         )
 
-    def _note_fresh(self, sample: Sample) -> None:
-        self._fresh.add(sample.sensor)
-        self._time = max(self._time, sample.time)
+    def _bodies(self, block: FrameBlock) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]:
+        """Return world_from_segment (n, 23, 4), Hips (n, 3), m, and whose heading is known (n, sensors)."""
+        rows = np.arange(len(self._sensors))
+        groups = np.clip(block.group, 0, self._headings.known.shape[1] - 1)
+        headed = rotation.multiply(self._headings.turns[rows, groups], block.attitude)
+        segments = rotation.multiply(headed, self._sensor_from_segment)
+        # Who has not sent anything yet is shown as in the held pose.
+        world = self._body.complete(np.where((block.group < 0)[..., None], self._resting, segments))
+        before = block.time[0] if self._last_time is None else self._last_time
+        self._last_time = float(block.time[-1])
+        hips = self._root.run(world, np.diff(block.time, prepend=before))
+        return world, hips, self._headings.known[rows, groups] & (block.group >= 0)
 
-    def _close(self) -> Frame:
-        started = {s: t for s, t in self._tracks.items() if s in self._place_of and t.last is not None}
-        frame = Frame(
-            self._time,
-            {sensor: track.attitude for sensor, track in started.items()},
-            frozenset(self._fresh),
-            {sensor: track.group for sensor, track in started.items()},
-        )
+    def _frame_s(self) -> float:
+        return min(self._tracks[sensor].info.frame_s for sensor in self._place_of if sensor in self._tracks)
+
+    def _hear(self, sample: Sample) -> list[Frame]:
+        """Note that a worn sensor sent, and return the frame that this completes."""
+        done = self._close() if sample.sensor in self._fresh else []
+        self._fresh.add(sample.sensor)
+        self._heard[sample.sensor] = sample.time
+        self._time = max(self._time, sample.time)
+        return [*done, *(self._close() if len(self._fresh) == len(self._place_of) else [])]
+
+    def _close(self) -> list[Frame]:
+        """End the frame; one that is no newer than the last goes into the next."""
         self._fresh.clear()
-        return frame
+        if self._time <= self._closed:
+            return []
+        self._closed = self._time
+        started = {s: t for s, t in self._tracks.items() if s in self._place_of and t.last is not None}
+        return [
+            Frame(
+                self._time,
+                {sensor: track.attitude for sensor, track in started.items()},
+                {sensor: self._heard.get(sensor, float("-inf")) for sensor in started},
+                {sensor: track.group for sensor, track in started.items()},
+            )
+        ]
 
     def _remember(self, sample: Sample, track: LiveTrack) -> None:
         history = self._history[sample.sensor]
-        history.time.append(sample.time)
-        history.attitude.append(track.attitude)
-        history.device.append(sample.orientation)
-        history.speed.append(track.speed)
-        history.run.append(track.run)
-        history.group.append(track.group)
-        kept = len(history.time)
-        if kept > 1024 and history.time[kept // 2] < sample.time - self._keep_s:
-            history.forget_before(kept // 2)
-
-    def _group_at(self, sensor: SensorId, time: float) -> int:
-        history = self._history[sensor]
-        row = bisect_left(history.time, time)
-        return history.group[min(row, len(history.group) - 1)] if history.group else 0
+        history.append(sample.time, *track.attitude, *sample.orientation, track.speed, track.run, track.group)
+        history.forget(sample.time - self._keep_s, FORGOTTEN_AT_ONCE)
 
     def _track(self, sensor: SensorId, spans: Sequence[tuple[float, float]]) -> SensorTrack:
-        live, kept = self._tracks[sensor], self._history[sensor]
+        live, kept = self._tracks[sensor], self._history[sensor].values()
         if live.info.common_world:
             spans = [(min(start for start, _ in spans), max(end for _, end in spans))]
-        time = np.array(kept.time)
-        rows = np.concatenate([np.flatnonzero((time >= start) & (time <= end)) for start, end in sorted(spans)])
-        chosen = np.unique(rows).tolist()
-
-        def column(values: list[T]) -> list[T]:
-            return [values[row] for row in chosen]
-
+        if EVER not in spans:
+            time = kept[:, 0]
+            kept = kept[np.any([(time >= start) & (time <= end) for start, end in spans], axis=0)]
         return SensorTrack(
             info=live.info,
             estimator=live.estimator,
-            time=time[chosen],
-            attitude=np.array(column(kept.attitude)).reshape(-1, 4),
-            device=np.array(column(kept.device)).reshape(-1, 4),
-            speed=np.array(column(kept.speed)),
-            lost=np.zeros(len(chosen), bool),
-            run=np.array(column(kept.run), np.int32),
-            group=np.array(column(kept.group), np.int32),
+            time=kept[:, 0],
+            attitude=kept[:, 1:5],
+            device=kept[:, 5:9],
+            speed=kept[:, 9],
+            lost=np.zeros(len(kept), bool),
+            run=kept[:, 10].astype(np.int32),
+            group=kept[:, 11].astype(np.int32),
             offset=np.zeros(3),
             offset_sigma=float("nan"),
+            levelled=live.info.has_acceleration or live.estimator == "device",
         )
+
+
+def _look_up(headings: Sequence[Mapping[int, float]]) -> _Headings:
+    groups = 1 + max((max(known) for known in headings), default=0)
+    turns = np.empty((len(headings), groups + 1, 4))
+    known = np.zeros((len(headings), groups + 1), bool)
+    for row, of_groups in enumerate(headings):
+        turns[row] = rotation.about(2, next(iter(of_groups.values())))
+        for group, heading in of_groups.items():
+            turns[row, group] = rotation.about(2, heading)
+            known[row, group] = True
+    return _Headings(turns, known)
+
+
+def _coverage(heard: NDArray[np.float64], frame_s: float) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Return in which frames (n,) a sensor was heard, and in which it was, or the silence around them is bridged."""
+    fresh = np.isfinite(heard) & (np.diff(heard, prepend=np.nan) != 0)
+    source = np.minimum.accumulate(np.where(fresh, np.arange(len(heard)), len(heard))[::-1])[::-1]
+    silent_for = np.append(heard, np.inf)[source] - heard
+    return fresh, fresh | (silent_for <= longest_bridge(frame_s))
 
 
 def samples_of(take: Take) -> Iterator[Sample]:
     """Yield the samples of a take in their order of arrival; times are take times."""
-    rows = [(int(arrival), stream, row) for stream in take.streams for row, arrival in enumerate(stream.arrival)]
-    for _, stream, row in sorted(rows, key=lambda item: item[0]):
-        yield sample_at(stream, row)
+    if not take.streams:
+        return
+    arrival = np.concatenate([stream.arrival for stream in take.streams])
+    stream_of = np.repeat(np.arange(len(take.streams)), [len(stream) for stream in take.streams])
+    row_of = np.concatenate([np.arange(len(stream)) for stream in take.streams])
+    order = np.argsort(arrival, kind="stable")
+    for start in range(0, len(order), CHUNK):
+        part = order[start : start + CHUNK]
+        for index, row in zip(stream_of[part].tolist(), row_of[part].tolist(), strict=True):
+            yield sample_at(take.streams[index], row)
 
 
 def sample_at(stream: Stream, row: int) -> Sample:

@@ -6,14 +6,14 @@ import numpy as np
 
 from studio.core import single_rotation as single
 from studio.core.attitude import open_estimator
-from studio.core.runs import LONGEST_BRIDGE, recorrect, uses_wire_quaternions
-from studio.core.sample import MISSING_QUATERNION, MISSING_VECTOR, Quaternion, Sample, SensorInfo, Vector
+from studio.core.runs import is_bridged, recorrect, steps_across, uses_wire_quaternions
+from studio.core.sample import MISSING_QUATERNION, MISSING_VECTOR, Flag, Quaternion, Sample, SensorInfo, Vector
 from studio.core.take import Calibration
-from studio.core.track import CARRY_AFTER, LARGEST_CARRY, estimator_for, prior_offset_sigma, wanted_correction
+from studio.core.track import estimator_for, goes_on, in_force, prior_offset_sigma
 
 
 class LiveTrack:
-    """Steps an estimator through the samples of one sensor as they arrive, bridging short gaps."""
+    """Steps an estimator through the samples of one sensor as they arrive, bridging gaps."""
 
     def __init__(self, info: SensorInfo, wanted: str, calibration: Calibration | None) -> None:
         self.info = info
@@ -27,94 +27,103 @@ class LiveTrack:
         self.last: Sample | None = None
         """The sample stepped last; None before the first."""
         self._calibration = calibration
-        self._corrected_anew = False
-        self._carry: Quaternion | None = None
-        self._settling = 0
-        self._turn = single.IDENTITY
+        self._flags = 0
         self._increment = np.zeros(3)
         self._force = np.zeros(3)
         self._device = np.zeros(4)
 
     def recalibrate(self, calibration: Calibration) -> None:
-        """Correct the sensor anew: the next sample begins a run, because the filter has learned the old offset."""
+        """Correct the sensor anew from here on: its attitude goes on, what was learned of its offset ends."""
         self._calibration = calibration
-        self._corrected_anew = self.last is not None
+        if self.last is not None:
+            self._filter.forget_offset(self._offset_sigma())
+
+    def accepts(self, sample: Sample) -> bool:
+        """Return whether ``push`` would step the sample: it tells about turning, and does not come too late."""
+        by_rate = self.info.has_rate and not uses_wire_quaternions(self.info)
+        told = sum(sample.rate) if by_rate else sum(sample.orientation)
+        return math.isfinite(told) and not sample.flags & Flag.IMU_ERROR and self._is_newer(sample)
+
+    def is_heard(self, sample: Sample) -> bool:
+        """Return whether the sample came in time, and tells of the tag instead of how it turned."""
+        return bool(sample.flags & Flag.FILLED) and self.last is not None and self._is_newer(sample)
 
     def push(self, sample: Sample) -> bool:
         """Take the next sample; False when it tells nothing about turning, or comes too late to be stepped."""
-        by_rate = self.info.has_rate and not uses_wire_quaternions(self.info)
-        if not math.isfinite(sample.rate[0] if by_rate else sample.orientation[0]):
+        if not self.accepts(sample):
             return False
         last = self.last
-        if (
-            last is None
-            or self._corrected_anew
-            or sample.epoch != last.epoch
-            or (sample.frame - last.frame) * self.info.frame_s > LONGEST_BRIDGE
-        ):
-            self._begin(last, sample)
-        elif sample.frame <= last.frame:
-            return False
+        self._flags |= sample.flags
+        if last is None:
+            self._begin(sample)
         else:
-            self._bridge(last, sample)
+            self._follow(last, sample)
         self.last = sample
         return True
 
-    def _begin(self, last: Sample | None, sample: Sample) -> None:
-        """Start a new run; its heading is carried over where the device's quaternion tells."""
-        self._carry, self._corrected_anew = None, False
-        if last is not None:
-            self.run += 1
-            gap = (sample.frame - last.frame) * self.info.frame_s
-            sure = prior_offset_sigma(self.info, sample.flags, self._calibration) * gap <= LARGEST_CARRY
-            if (sample.epoch == last.epoch and sure) or self.info.common_world:
-                carry = single.multiply(self.attitude, single.inverse(last.orientation))
-                self._carry = carry if math.isfinite(carry[0] + sample.orientation[0]) else None
-            if self._carry is None:
-                self.group += 1
-        self._settling = round(CARRY_AFTER / self.info.frame_s) + 1
-        self._turn = single.IDENTITY
-        sigma = prior_offset_sigma(self.info, sample.flags, self._calibration)
-        self._filter = open_estimator(self.estimator, self.info.frame_s, sigma)
+    def _is_newer(self, sample: Sample) -> bool:
+        return self.last is None or (sample.epoch, sample.frame) > (self.last.epoch, self.last.frame)
+
+    def _follow(self, last: Sample, sample: Sample) -> None:
+        if sample.epoch == last.epoch:
+            missing = sample.frame - last.frame
+            silent_for = missing * self.info.frame_s
+            if is_bridged(silent_for, self.info.frame_s):
+                self._bridge(last, sample, missing, silent_for)
+                return
+        else:
+            silent_for = sample.time - last.time
+        self.run += 1
+        known = math.isfinite(last.orientation[0] + sample.orientation[0])
+        if known and goes_on(self.info, sample.epoch == last.epoch, silent_for, self._offset_sigma()):
+            self._bridge(last, sample, steps_across(silent_for, self.info.frame_s), silent_for)
+            return
+        self.group += 1
+        self._begin(sample)
+
+    def _begin(self, sample: Sample) -> None:
+        """Start a new filter, whose heading is its own."""
+        self._filter = open_estimator(self.estimator, self.info.frame_s, self._offset_sigma())
         self.speed = 0.0
         self._step((0.0, 0.0, 0.0), sample.acceleration, sample.orientation)
 
-    def _bridge(self, last: Sample, sample: Sample) -> None:
+    def _bridge(self, last: Sample, sample: Sample, steps: int, elapsed: float) -> None:
         before = self.attitude
-        missing = sample.frame - last.frame
-        x, y, z = self._turned(last, sample, missing * self.info.frame_s)
-        increment = (x / missing, y / missing, z / missing)
-        for _ in range(missing - 1):
+        x, y, z = self._turned(last, sample, elapsed)
+        increment = (x / steps, y / steps, z / steps)
+        for _ in range(steps - 1):
             self._step(increment, MISSING_VECTOR, MISSING_QUATERNION)
         self._step(increment, sample.acceleration, sample.orientation)
         turned = single.to_rotation_vector(single.multiply(single.inverse(before), self.attitude))
-        self.speed = math.hypot(*turned) / (missing * self.info.frame_s)
+        self.speed = math.hypot(*turned) / elapsed
 
     def _turned(self, last: Sample, sample: Sample, elapsed: float) -> Vector:
         """Return the rotation vector since the last sample, rad, corrected as wanted."""
-        if uses_wire_quaternions(self.info):
+        by_wire = uses_wire_quaternions(self.info)
+        is_one_run = sample.epoch == last.epoch and is_bridged(elapsed, self.info.frame_s)
+        if by_wire or not is_one_run:
             raw = single.to_rotation_vector(single.multiply(single.inverse(last.orientation), sample.orientation))
-            applied = self.info.correction
         elif self.info.has_rate:
             a, b, half = last.rate, sample.rate, 0.5 * elapsed
-            raw, applied = ((a[0] + b[0]) * half, (a[1] + b[1]) * half, (a[2] + b[2]) * half), None
+            raw = ((a[0] + b[0]) * half, (a[1] + b[1]) * half, (a[2] + b[2]) * half)
         else:
             return (0.0, 0.0, 0.0)
-        wanted = wanted_correction(self._calibration)
-        if wanted is None:
+        calibration = self._in_force()
+        if calibration is None or not (by_wire or is_one_run):  # a filter on the device corrects by itself
             return raw
-        x, y, z = recorrect(np.array([raw]), elapsed, applied, wanted)[0].tolist()
+        applied = self.info.correction if by_wire else None
+        x, y, z = recorrect(np.array([raw]), elapsed, applied, calibration.correction)[0].tolist()
         return (x, y, z)
+
+    def _in_force(self) -> Calibration | None:
+        return in_force(self.info, self._flags, self._calibration)
+
+    def _offset_sigma(self) -> float:
+        return prior_offset_sigma(self.info, self._flags, self._in_force())
 
     def _step(self, increment: Vector, force: Vector, device: Quaternion) -> None:
         self._increment[:] = increment
         self._force[:] = force
         self._device[:] = device
         w, x, y, z = self._filter.step(self._increment, self._force, self._device).tolist()
-        estimate = (w, x, y, z)
-        if self._settling > 0:
-            self._settling -= 1
-            if self._carry is not None and math.isfinite(device[0]):
-                expected = single.multiply(self._carry, device)
-                self._turn = single.about_up(single.heading(single.multiply(expected, single.inverse(estimate))))
-        self.attitude = estimate if self._carry is None else single.multiply(self._turn, estimate)
+        self.attitude = (w, x, y, z)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from studio.core import rotation
 from studio.core.body import Segment, Skeleton
+from studio.core.take import Alignment
 
 HEIGHT_SCALE = 0.03  # m; a foot 3 cm higher counts as much against support as TURN_SCALE
 TURN_SCALE = 2.0  # rad/s
@@ -76,6 +77,18 @@ class Root:
         if self._last_corners is not None:
             stood = self._last_corners[foot][point]
             self._anchor = (self._hips[0] + stood[0], self._hips[1] + stood[1])
+
+
+def put_under_hold(hips: NDArray[np.float64], time: NDArray[np.float64], alignment: Alignment) -> None:
+    """Move Hips (n, 3), m, in place, so that the world's origin lies under the pelvis at the reference hold.
+
+    A hold that came before the take leaves the origin where the take began.
+    """
+    held = (time >= alignment.from_s) & (time <= max(alignment.to_s, alignment.from_s))
+    if not held.any() and time[0] <= alignment.from_s <= time[-1]:  # a single moment, between two frames
+        held[int(np.argmin(np.abs(time - alignment.from_s)))] = True
+    if held.any():
+        hips[:, :2] -= hips[held, :2].mean(axis=0)
 
 
 def _foot_points(skeleton: Skeleton, world_from_segment: NDArray[np.float64]) -> NDArray[np.float64]:

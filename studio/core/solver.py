@@ -5,22 +5,25 @@ in a loop over the samples in their order of arrival; ``offline`` may look ahead
 to one regular grid.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from studio.core import rotation
-from studio.core.alignment import align, heading_in, hold_all, require_headings
+from studio.core.alignment import align, refused_holds, require_headings
 from studio.core.body import REFERENCE_POSES, Place, Skeleton
-from studio.core.errors import AlignmentError, NoSensorWorn, PoseMissing
+from studio.core.errors import AlignmentError, HeadingsUnknown, MovedDuringHold, NoSensorWorn, PoseMissing, PoseTooShort
 from studio.core.full_body import FullBody
+from studio.core.headings import GroupHeadings, headings_of
+from studio.core.live_frames import FrameLog
 from studio.core.live_solver import Solver, samples_of
 from studio.core.pose import Method, Motion
-from studio.core.root import Root
+from studio.core.root import Root, put_under_hold
 from studio.core.sample import SensorId
-from studio.core.take import Alignment, Calibration, Mark, Take
+from studio.core.take import Alignment, Calibration, CarriedAlignment, Mark, Take
 from studio.core.track import SensorTrack, attitude_at, tracks_of
 
 CHUNK = 4096  # poses at a time: the working set stays in the cache
@@ -47,6 +50,15 @@ class Solution:
     tracks: Mapping[SensorId, SensorTrack] = field(repr=False)
 
 
+class Aligned(NamedTuple):
+    """How the sensors of a take sit on the body."""
+
+    alignment: Alignment
+    headings: GroupHeadings
+    notes: tuple[str, ...]
+    """What had to be assumed, in plain words."""
+
+
 def solve(take: Take, options: SolveOptions | None = None) -> Solution:
     """Return the motion of a take.
 
@@ -59,12 +71,12 @@ def solve(take: Take, options: SolveOptions | None = None) -> Solution:
     if chosen.method == "live":
         return _solve_live(take, chosen)
     tracks = solve_tracks(take, chosen)
-    alignment, notes = find_alignment(take, tracks, chosen)
+    aligned = find_alignment(take, tracks, chosen)
+    alignment, headings = aligned.alignment, aligned.headings
     worn = {p: tracks[s] for p, s in take.setup.assignment.sensors.items() if s in tracks and p in alignment.limbs}
     frame_s = min(track.info.frame_s for track in worn.values())
     time = np.arange(np.floor(take.duration() / frame_s + 1e-6) + 1) * frame_s
-    headings = {place: _headings(track, place, alignment, _poses(take, chosen), take) for place, track in worn.items()}
-    known = [place for place in take.setup.assignment.places() if place in worn and headings[place]]
+    known = [place for place in take.setup.assignment.places() if headings.get(place)]
     body = FullBody(known, alignment.pose)
     skeleton = Skeleton.from_stature(take.setup.stature)
     root = Root(skeleton)
@@ -75,6 +87,7 @@ def solve(take: Take, options: SolveOptions | None = None) -> Solution:
         segments = [_segment(worn[place], alignment, place, headings[place], time[part]) for place in known]
         world[part] = body.complete(np.stack(segments, axis=-2))
         hips[part] = root.run(world[part], np.full(len(time[part]), frame_s))
+    put_under_hold(hips, time, alignment)
     masks = {place: _coverage(worn[place], headings.get(place, {}), time) for place in worn}
     motion = Motion(
         time=time,
@@ -87,7 +100,7 @@ def solve(take: Take, options: SolveOptions | None = None) -> Solution:
         alignment=alignment,
         method="offline",
         attitude=chosen.attitude,
-        notes=(*notes, *_notes(take, tracks, chosen)),
+        notes=(*aligned.notes, *_notes(take, tracks, chosen)),
     )
     return Solution(motion, tracks)
 
@@ -97,30 +110,71 @@ def solve_tracks(take: Take, options: SolveOptions) -> dict[SensorId, SensorTrac
     return tracks_of(take, options.attitude, _calibrations(take, options))
 
 
-def find_alignment(
-    take: Take, tracks: Mapping[SensorId, SensorTrack], options: SolveOptions
-) -> tuple[Alignment, tuple[str, ...]]:
-    """Return the alignment of a take and notes on what had to be assumed."""
-    poses = _poses(take, options)
-    notes: tuple[str, ...] = ()
-    assumed = not any(mark.label in REFERENCE_POSES for mark in poses)
-    if assumed:
-        poses = (Mark(0.0, "pose", "n", min(ASSUMED_POSE, take.duration())), *poses)
-        notes = ("No pose was marked: the first second is taken for N-pose, and all angles are relative to it.",)
-    setup = take.setup
+def find_alignment(take: Take, tracks: Mapping[SensorId, SensorTrack], options: SolveOptions) -> Aligned:
+    """Return how the sensors sit: by the poses held in the take, else as carried into it, else by its first second.
+
+    Raises
+    ------
+    AlignmentError
+        No pose is known, limbs moved in all, or no limb's heading is known.
+    """
+    poses, carried = _poses(take, options), take.setup.carried
+    if any(mark.label in REFERENCE_POSES for mark in poses):
+        try:
+            return _held(take, tracks, poses)
+        except NoSensorWorn:
+            raise
+        except AlignmentError:
+            if carried is None:
+                raise
+    if carried is not None:
+        return _carried(take, tracks, poses, carried)
+    assumed = Mark(0.0, "pose", "n", min(ASSUMED_POSE, take.duration()))
     try:
-        alignment = align(tracks, setup.assignment, poses, setup.mounting, take.duration())
-    except NoSensorWorn:
-        raise
-    except AlignmentError:
-        if assumed:
-            raise PoseMissing(take.duration()) from None
-        raise
+        aligned = _held(take, tracks, (assumed, *poses))
+    except (MovedDuringHold, PoseTooShort):
+        raise PoseMissing(take.duration()) from None
+    note = "No pose was marked: the first second is taken for N-pose, and all angles are relative to it."
+    return aligned._replace(notes=(note, *aligned.notes))
+
+
+def _held(take: Take, tracks: Mapping[SensorId, SensorTrack], poses: tuple[Mark, ...]) -> Aligned:
+    setup, duration = take.setup, take.duration()
+    alignment = align(tracks, setup.assignment, poses, setup.mounting, duration)
     require_headings(alignment)
-    unknown = [place.value.replace("_", " ") for place, limb in alignment.limbs.items() if limb.source == "unknown"]
-    if unknown:
-        notes = (*notes, f"Heading unknown, so shown without a sensor of its own: {', '.join(unknown)}.")
-    return alignment, notes
+    headings = headings_of(_worn(take, tracks), alignment, poses, duration)
+    refused = refused_holds(tracks, setup.assignment, poses, alignment, duration)
+    notes = [f"Moved in the hold {hold.pose}, so that it tells nothing: {_listed(hold.places)}." for hold in refused]
+    return Aligned(alignment, headings, (*notes, *_unknown(alignment, headings)))
+
+
+def _carried(
+    take: Take, tracks: Mapping[SensorId, SensorTrack], poses: tuple[Mark, ...], carried: CarriedAlignment
+) -> Aligned:
+    worn = _worn(take, tracks)
+    if not worn:
+        raise NoSensorWorn(len(tracks))
+    headings = headings_of(worn, carried.alignment, poses, take.duration(), carried)
+    if not any(headings.values()):
+        raise HeadingsUnknown(tuple(place.value for place in worn))
+    since = carried.time - carried.alignment.to_s
+    note = f"The body was calibrated {since:.0f} s before the take began; no pose was held in it."
+    if any(mark.label in REFERENCE_POSES for mark in poses):
+        note = f"The body was calibrated {since:.0f} s before the take began; the poses held in it could not be used."
+    return Aligned(carried.alignment, headings, (note, *_unknown(carried.alignment, headings)))
+
+
+def _worn(take: Take, tracks: Mapping[SensorId, SensorTrack]) -> dict[Place, SensorTrack]:
+    return {place: tracks[sensor] for place, sensor in take.setup.assignment.sensors.items() if sensor in tracks}
+
+
+def _unknown(alignment: Alignment, headings: GroupHeadings) -> tuple[str, ...]:
+    unknown = [place.value for place in alignment.limbs if not headings.get(place)]
+    return (f"Heading unknown, so shown without a sensor of its own: {_listed(unknown)}.",) if unknown else ()
+
+
+def _listed(places: Iterable[str]) -> str:
+    return ", ".join(place.replace("_", " ") for place in places)
 
 
 def _calibrations(take: Take, options: SolveOptions) -> Mapping[SensorId, Calibration]:
@@ -133,33 +187,14 @@ def _poses(take: Take, options: SolveOptions) -> tuple[Mark, ...]:
     return options.poses or take.poses()
 
 
-def _headings(
-    track: SensorTrack, place: Place, alignment: Alignment, poses: tuple[Mark, ...], take: Take
-) -> dict[int, float]:
-    """Return the heading (rad) of each heading group of a track that some hold fixes; empty when unknown."""
-    limb = alignment.limbs[place]
-    if limb.source == "unknown":
-        return {}
-    reference = Mark(alignment.from_s, "pose", alignment.pose, alignment.to_s)
-    headings: dict[int, float] = {}
-    for mark in (reference, *(m for m in poses if m.label in REFERENCE_POSES)):
-        hold = hold_all({place: track}, mark, take.duration(), required=False).get(place)
-        if hold is not None and hold.group not in headings:
-            first = mark is reference
-            headings[hold.group] = (
-                limb.heading if first else heading_in(hold, mark.label, place, np.array(limb.sensor_from_segment))
-            )
-    return headings
-
-
 def _segment(
     track: SensorTrack, alignment: Alignment, place: Place, headings: Mapping[int, float], time: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Return world_from_segment (n, 4) of one place."""
     sensor_from_segment = np.array(alignment.limbs[place].sensor_from_segment)
     nearest = _nearest(track, time)
-    # Where a restarted sensor has no heading yet, the last known one stands in; ``measured`` is False there.
-    fallback = alignment.limbs[place].heading
+    # Where a restarted sensor has no heading yet, a known one stands in; ``measured`` is False there.
+    fallback = next(iter(headings.values()))
     heading = np.array([headings.get(int(group), fallback) for group in track.group[nearest]])
     headed = rotation.multiply(rotation.about(2, heading), attitude_at(track, time))
     return rotation.multiply(headed, sensor_from_segment)
@@ -175,6 +210,8 @@ def _coverage(
     track: SensorTrack, headings: Mapping[int, float], time: NDArray[np.float64]
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Return (measured, lost) on the grid."""
+    if not len(track.time):
+        return np.zeros(len(time), bool), np.ones(len(time), bool)
     nearest = _nearest(track, time)
     near = np.abs(track.time[nearest] - time) <= track.info.frame_s
     known = np.isin(track.group[nearest], list(headings))
@@ -196,9 +233,11 @@ def _solve_live(take: Take, options: SolveOptions) -> Solution:
     solver = Solver(take.setup, options.attitude, _calibrations(take, options))
     for stream in take.streams:
         solver.add_sensor(stream.info)
-    history = [frame for sample in samples_of(take) for frame in solver.push(sample)]
+    history = FrameLog(take.setup.assignment.sensors.values())
+    for sample in samples_of(take):
+        history.extend(solver.push(sample))
     tracks = solver.tracks()
-    alignment, notes = find_alignment(take, tracks, options)
-    solver.use(alignment)
-    motion = solver.motion(history, (*notes, *_notes(take, tracks, options)))
+    aligned = find_alignment(take, tracks, options)
+    solver.use(aligned.alignment, aligned.headings)
+    motion = solver.motion(history, (*aligned.notes, *_notes(take, tracks, options)))
     return Solution(motion, tracks)

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from studio.core import rest, rotation
 from studio.core.attitude import open_estimator
-from studio.core.runs import Run, has_turning, runs_of, uses_wire_quaternions
-from studio.core.sample import NO_CORRECTION, Correction, Flag, SensorId, SensorInfo, Stream
+from studio.core.runs import Run, chained, has_turning, runs_of, uses_wire_quaternions
+from studio.core.sample import NO_CORRECTION, Flag, SensorId, SensorInfo, Stream
 from studio.core.take import Calibration, Take
 
 RAW_OFFSET_SIGMA = math.radians(20.0) / math.sqrt(3.0)  # rad/s; MPU-6050 data sheet: ±20 °/s, uniform
@@ -18,7 +18,6 @@ FRESH_OFFSET_SIGMA = math.radians(0.03)  # rad/s; measured at rest since power-o
 STORED_OFFSET_SIGMA = math.radians(0.05)  # rad/s; a stored offset after some minutes of warming up
 DEVICE_OFFSET_SIGMA = math.radians(1.0)  # rad/s; a device with a filter of its own tracks its offset
 LARGEST_CARRY = math.radians(2.0)  # what an offset may have turned a tag's own quaternion by during a gap
-CARRY_AFTER = 1.0  # s into a new run at which its heading is compared: its tilt has settled by then
 
 
 @dataclass(frozen=True)
@@ -46,6 +45,8 @@ class SensorTrack:
     """(3,), rad/s, subtracted after the sensor's own correction."""
     offset_sigma: float
     """rad/s, standard uncertainty of the offset, largest axis."""
+    levelled: bool = True
+    """False: the sensor tells nothing of gravity, so that world z need not point up."""
 
     def rows(self, from_s: float, to_s: float) -> NDArray[np.intp]:
         """Return the frames between two times."""
@@ -83,10 +84,9 @@ def estimator_for(info: SensorInfo, wanted: str) -> str:
     """Return the estimator that serves a sensor when ``wanted`` was asked for."""
     if not has_turning(info):
         return "device"
-    if wanted == "device":
-        return "gyro" if uses_wire_quaternions(info) else wanted
-    if wanted == "vqf" and not info.has_acceleration:
-        return "gyro" if uses_wire_quaternions(info) else "device"
+    if wanted == "device" or not info.has_acceleration:
+        # Without an accelerometer a device that levels itself is to be believed, and any other only turns.
+        return "device" if info.orientation == "world" else "gyro"
     return wanted
 
 
@@ -103,24 +103,61 @@ def prior_offset_sigma(info: SensorInfo, flags: int, calibration: Calibration | 
     return RAW_OFFSET_SIGMA
 
 
-def wanted_correction(calibration: Calibration | None) -> Correction | None:
-    """Return the correction a calibration asks for, None to leave the tag's own in force."""
-    return None if calibration is None else calibration.correction
+def in_force(info: SensorInfo, flags: int, calibration: Calibration | None) -> Calibration | None:
+    """Return the calibration to correct a sensor by, None to leave the sensor's own correction in force.
+
+    A tag that corrects by itself and did not tell how cannot be corrected anew: it would be corrected twice.
+
+    Parameters
+    ----------
+    flags : int
+        ``Flag`` of all samples of the take so far, together.
+    """
+    corrects = flags & (Flag.CALIBRATED | Flag.OFFSET_OK)
+    if uses_wire_quaternions(info) and info.correction is None and corrects:
+        return None
+    return calibration
+
+
+def goes_on(info: SensorInfo, is_same_epoch: bool, silent_for: float, doubt: float) -> bool:
+    """Return whether the sensor's own quaternion tells how it turned during a silence.
+
+    That of a tag does while it goes on integrating, as long as an offset of ``doubt`` rad/s turned it by less than
+    2 degrees in ``silent_for`` s; that of a device with a heading of its own always does.
+    """
+    return info.common_world or (is_same_epoch and doubt * silent_for <= LARGEST_CARRY)
+
+
+def flags_of(stream: Stream) -> int:
+    """Return the flags of all samples together."""
+    return int(np.bitwise_or.reduce(stream.flags)) if len(stream) else 0
 
 
 def _track(stream: Stream, wanted: str, calibration: Calibration | None) -> SensorTrack:
     info = stream.info
-    runs = runs_of(stream, wanted_correction(calibration))
-    flags = int(np.bitwise_or.reduce(stream.flags)) if len(stream) else 0
+    flags = flags_of(stream)
+    calibration = in_force(info, flags, calibration)
+    correction = None if calibration is None else calibration.correction
+    runs = runs_of(stream, correction)
     prior = prior_offset_sigma(info, flags, calibration)
     # An estimator asked to repeat the device must not be improved upon.
     offset, sigma = (np.zeros(3), prior) if wanted == "device" else measure_offset(runs, info.frame_s, prior)
+    doubt = max(float(np.abs(offset).max()), sigma)
+    chains = runs[:1]
+    for run in runs[1:]:
+        before = chains[-1]
+        known = bool(np.isfinite(before.orientation[-1] + run.orientation[0]).all())
+        silent_for = float(run.time[0] - before.time[-1])
+        if known and goes_on(info, before.epoch == run.epoch, silent_for, doubt):
+            chains[-1] = chained(before, run, info, correction)
+        else:
+            chains.append(run)
     name = estimator_for(info, wanted)
     attitudes = []
-    for run in runs:
-        run.increments[1:] -= offset * info.frame_s
-        attitudes.append(open_estimator(name, info.frame_s, sigma).run(run))
-    return _joined(info, name, runs, attitudes, offset, sigma)
+    for chain in chains:
+        chain.increments[1:] -= offset * info.frame_s
+        attitudes.append(open_estimator(name, info.frame_s, sigma).run(chain))
+    return _joined(info, name, chains, attitudes, offset, sigma)
 
 
 def measure_offset(runs: list[Run], frame_s: float, prior: float) -> tuple[NDArray[np.float64], float]:
@@ -140,59 +177,34 @@ def measure_offset(runs: list[Run], frame_s: float, prior: float) -> tuple[NDArr
 def _joined(
     info: SensorInfo,
     name: str,
-    runs: list[Run],
+    chains: list[Run],
     attitudes: list[NDArray[np.float64]],
     offset: NDArray[np.float64],
     sigma: float,
 ) -> SensorTrack:
-    groups: list[int] = []
-    for index, run in enumerate(runs):
-        if index == 0:
-            groups.append(0)
-            continue
-        doubt = max(float(np.abs(offset).max()), sigma)
-        turn = carried_heading(info, runs[index - 1], attitudes[index - 1], run, attitudes[index], doubt)
-        if math.isfinite(turn):
-            attitudes[index] = rotation.multiply(rotation.about(2, turn), attitudes[index])
-        groups.append(groups[-1] if math.isfinite(turn) else groups[-1] + 1)
+    """Return chains of runs as one track, without the frames that only led across silences."""
+    lengths = [len(chain.time) for chain in chains]
 
     def join(parts: list[NDArray[np.float64]], width: int) -> NDArray[np.float64]:
         return np.concatenate(parts) if parts else np.empty((0, width))
 
-    lengths = [len(run.time) for run in runs]
+    attitude = join(attitudes, 4)
+    silent = join([chain.silent.astype(np.float64) for chain in chains], 0).reshape(-1) > 0
+    group = np.repeat(np.arange(len(chains), dtype=np.int32), lengths)
+    resumed = np.flatnonzero(np.diff(silent.astype(np.int8), prepend=0) < 0)
+    run = group + np.searchsorted(resumed, np.arange(len(silent)), side="right")
+    kept = ~silent & np.isfinite(attitude).all(axis=1)  # what an estimator cannot say is no attitude
     return SensorTrack(
         info=info,
         estimator=name,
-        time=join([run.time for run in runs], 0).reshape(-1),
-        attitude=join(attitudes, 4),
-        device=join([run.orientation for run in runs], 4),
-        speed=np.linalg.norm(join([run.increments for run in runs], 3), axis=1) / info.frame_s,
-        lost=join([run.lost.astype(np.float64) for run in runs], 0).reshape(-1) > 0,
-        run=np.repeat(np.arange(len(runs), dtype=np.int32), lengths),
-        group=np.repeat(np.array(groups, dtype=np.int32), lengths),
+        time=join([chain.time for chain in chains], 0).reshape(-1)[kept],
+        attitude=attitude[kept],
+        device=join([chain.orientation for chain in chains], 4)[kept],
+        speed=np.linalg.norm(join([chain.increments for chain in chains], 3), axis=1)[kept] / info.frame_s,
+        lost=join([chain.lost.astype(np.float64) for chain in chains], 0).reshape(-1)[kept] > 0,
+        run=run[kept].astype(np.int32),
+        group=group[kept],
         offset=offset,
         offset_sigma=sigma,
+        levelled=info.has_acceleration or name == "device",
     )
-
-
-def carried_heading(
-    info: SensorInfo,
-    before: Run,
-    before_attitude: NDArray[np.float64],
-    after: Run,
-    after_attitude: NDArray[np.float64],
-    doubt: float,
-) -> float:
-    """Return the turn about world z that continues the heading across a break, NaN when nothing tells.
-
-    A tag that went on integrating tells by its quaternion, as long as an offset of ``doubt`` rad/s turned it by
-    less than 2 degrees meanwhile; a device with a heading of its own tells always.
-    """
-    gap = float(after.time[0] - before.time[-1])
-    if not info.common_world and (before.epoch != after.epoch or doubt * gap > LARGEST_CARRY):
-        return math.nan
-    settled = min(round(CARRY_AFTER / info.frame_s), len(after.time) - 1)
-    expected = rotation.multiply(
-        before_attitude[-1], rotation.multiply(rotation.inverse(before.orientation[-1]), after.orientation[settled])
-    )
-    return float(rotation.twist_about(rotation.multiply(expected, rotation.inverse(after_attitude[settled])), 2))

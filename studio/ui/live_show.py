@@ -6,7 +6,7 @@ from datetime import UTC, datetime
 from PySide6.QtCore import QObject
 
 from studio.core.body import PLACES, Place, Skeleton
-from studio.core.live_solver import Pose
+from studio.core.live_frames import Pose
 from studio.ui.models.live_angles import LiveAngles
 from studio.ui.models.readiness import Problem, ReadinessState, StripPhase
 from studio.ui.models.recorder import Phase, Recorder

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from studio.core import rotation
-from studio.core.alignment import from_bow, stillest_second
+from studio.core.alignment import from_bow
 from studio.core.body import PLACES, PRESETS, SEGMENT_OF, Place, reference_pose
 from studio.core.errors import HeadingsUnknown, PoseTooShort
 from studio.core.facing import facing_from_hinges
+from studio.core.hold import stillest_second
 from studio.core.sample import SensorInfo
 from studio.core.solver import SolveOptions, solve
 from studio.core.strapping import strap_rule

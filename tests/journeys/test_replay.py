@@ -15,7 +15,8 @@ from studio.capture.live_buffer import LiveBuffer
 from studio.capture.live_session import LiveSession
 from studio.core import rotation
 from studio.core.body import Place
-from studio.core.live_solver import Pose, Solver, samples_of
+from studio.core.live_frames import FrameLog, Pose
+from studio.core.live_solver import Solver, samples_of
 from studio.core.solver import SolveOptions, solve
 from studio.core.take import Alignment, Take
 from studio.storage.take_reader import read_take, take_zero
@@ -179,7 +180,9 @@ def test_with_losses_and_a_restart_the_solver_makes_the_same_body_of_the_same_sa
     solver = Solver(seen.take.setup, "vqf", {})
     for stream in seen.take.streams:
         solver.add_sensor(stream.info)
-    frames = [frame for sample in samples_of(seen.take) for frame in solver.push(sample)]
+    frames = FrameLog(seen.take.setup.assignment.sensors.values())
+    for sample in samples_of(seen.take):
+        frames.extend(solver.push(sample))
     solver.use(seen.alignment)
     motion = solver.motion(frames, ())
 
@@ -188,7 +191,9 @@ def test_with_losses_and_a_restart_the_solver_makes_the_same_body_of_the_same_sa
     assert_same_body(shown, motion, rows)
     assert_same_way(shown, motion, rows)
     assert any(Place.LEFT_SHANK in pose.measured for pose in shown)
-    assert not any(Place.LEFT_SHANK in pose.measured for pose in shown if pose.time > 11.5)
+    assert not any(
+        Place.LEFT_SHANK in pose.measured for pose in shown if pose.time > 12.1
+    )  # bridged for up to a second
 
 
 def test_the_body_of_a_take_played_again_is_the_body_that_was_seen_then(tmp_path):

@@ -1,14 +1,14 @@
 """What a held pose is worth, limb by limb; and one limb repeated while the others stay as they are."""
 
 import math
-import statistics
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from typing import Literal, NamedTuple
 
-from studio.core.alignment import Tracks, align, reference_mark, require_headings
+from studio.core.alignment import Tracks, align, reference_mark, refused_holds, require_headings
 from studio.core.body import PLACES, Place
 from studio.core.errors import AlignmentError, MovedDuringHold
+from studio.core.headings import turn_between, wrapped
 from studio.core.take import Alignment, Assignment, HeadingSource, LimbAlignment, Mark, Mounting
 
 GOOD = math.radians(1.0)  # rad, root mean square; a standing person sways with an SD of 0.5°
@@ -103,14 +103,16 @@ class BodyHolds:
         if alignment is None:
             return Judged(None, error)
         moved = _moved_in(error)
-        pose = alignment.pose
+        pose = error.pose if isinstance(error, MovedDuringHold) else alignment.pose
         for marks, places in self._groups():
             poses = sorted((self._whole | marks).values(), key=lambda mark: mark.time)
             fresh = judge(tracks, assignment, poses, mounting, take_s, places)
             if fresh.alignment is None and not isinstance(fresh.error, MovedDuringHold):
                 return Judged(alignment, fresh.error)
             moved = {name: degrees for name, degrees in moved.items() if Place(name) not in places}
-            moved |= _moved_in(fresh.error)
+            if isinstance(fresh.error, MovedDuringHold):
+                moved |= _moved_in(fresh.error)
+                pose = fresh.error.pose
             if fresh.alignment is not None:
                 alignment = merged(alignment, fresh.alignment, places)
         return Judged(alignment, _blamed(pose, moved) or _without_headings(alignment))
@@ -169,6 +171,9 @@ def judge(
         except AlignmentError as error:
             return Judged(None, error)
         break
+    for refusal in refused_holds(tracks, Assignment(worn), poses, alignment, take_s):
+        moved |= dict(zip(refusal.places, refusal.degrees, strict=True))
+        pose = refusal.pose
     return Judged(alignment, _blamed(pose, moved, only) or _without_headings(alignment))
 
 
@@ -184,29 +189,17 @@ def merged(before: Alignment, fresh: Alignment, only: Collection[Place]) -> Alig
     repeated: the worlds of their sensors did not turn, so that the difference of their headings is the turn of
     the wearer. Without any, both holds count as facing the same way.
     """
-    turn = _turn_between(before, fresh, only)
+    stayed = {place: limb.heading for place, limb in fresh.limbs.items() if place not in only and _is_known(limb)}
+    was = {place: limb.heading for place, limb in before.limbs.items() if _is_known(limb)}
+    turn = turn_between(was, stayed) or 0.0
     limbs = dict(before.limbs)
     for place in only:
         limb = fresh.limbs.get(place)
         if limb is not None:
-            known = limb.source != "unknown"
-            limbs[place] = replace(limb, heading=_wrapped(limb.heading + turn)) if known else limb
+            limbs[place] = replace(limb, heading=wrapped(limb.heading + turn)) if _is_known(limb) else limb
     return replace(before, limbs=limbs)
 
 
-def _turn_between(before: Alignment, fresh: Alignment, only: Collection[Place]) -> float:
-    """Return the wearer's turn from the first hold to the fresh one, rad: the median of the limbs that stayed."""
-    turns = [
-        before.limbs[place].heading - limb.heading
-        for place, limb in fresh.limbs.items()
-        if place not in only and place in before.limbs and "unknown" not in (limb.source, before.limbs[place].source)
-    ]
-    if not turns:
-        return 0.0
-    # Angles around one of them do not wrap unless they contradict each other by half a turn.
-    first = turns[0]
-    return first + statistics.median(_wrapped(turn - first) for turn in turns)
-
-
-def _wrapped(angle: float) -> float:
-    return math.remainder(angle, 2 * math.pi)
+def _is_known(limb: LimbAlignment) -> bool:
+    """Return whether something told the limb's heading."""
+    return limb.source != "unknown"

@@ -20,6 +20,9 @@ class DeviceOrientation:
             self._last = orientation
         return self._last
 
+    def forget_offset(self, offset_sigma: float) -> None:
+        """Go on: the device estimates its offset by itself."""
+
     def run(self, run: Run) -> NDArray[np.float64]:
         """Return the orientations of the run, bridged where frames are missing."""
         return run.orientation

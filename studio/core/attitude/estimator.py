@@ -33,6 +33,9 @@ class Estimator(Protocol):
         (4,), world_from_sensor
         """
 
+    def forget_offset(self, offset_sigma: float) -> None:
+        """Go on from here with a gyroscope that is corrected anew, its offset known to ``offset_sigma`` rad/s."""
+
     def run(self, run: Run) -> NDArray[np.float64]:
         """Return ``world_from_sensor`` (n, 4) for a whole run."""
 

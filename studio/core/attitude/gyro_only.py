@@ -34,6 +34,9 @@ class GyroOnly:
             self._world_from_start = levelling(self._up_in_start)
         return rotation.multiply(self._world_from_start, self._start_from_sensor)
 
+    def forget_offset(self, offset_sigma: float) -> None:
+        """Go on: no offset was learned."""
+
     def run(self, run: Run) -> NDArray[np.float64]:
         """Return the integral, levelled over the stillest stretch of the run (its first second when none is still)."""
         start_from_sensor = cumulative_product(rotation.from_rotation_vector(run.increments))
@@ -41,10 +44,12 @@ class GyroOnly:
 
 
 def up_in_start(run: Run, start_from_sensor: NDArray[np.float64], frame_s: float) -> NDArray[np.float64]:
-    """Return the mean specific force (3,) at rest, in the frame in which the run started."""
+    """Return the summed specific force (3,) at rest, in the frame in which the run started."""
     rest = find_rest(run.increments / frame_s, run.acceleration, frame_s, RATE_SPREAD_WORN)
     still = slice(0, math.ceil(LEVEL_TIME / frame_s)) if rest is None else slice(rest.first, rest.last)
-    return np.asarray(rotation.rotate(start_from_sensor[still], run.acceleration[still]).mean(axis=0))
+    force = run.acceleration[still]
+    known = np.isfinite(force).all(axis=1)
+    return np.asarray(rotation.rotate(start_from_sensor[still][known], force[known]).sum(axis=0))
 
 
 def levelling(up: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -43,11 +43,16 @@ class Vqf6D:
             self._levelled = True
         return np.asarray(self._filter.getQuat6D())
 
+    def forget_offset(self, offset_sigma: float) -> None:
+        """Go on from here: nothing is left to subtract, and that is known to ``offset_sigma`` rad/s."""
+        self._filter.setBiasEstimate(np.zeros(3), offset_sigma)
+
     def run(self, run: Run) -> NDArray[np.float64]:
         """Return the acausal estimate: forward and backward through the run."""
         rate = run.increments / self._frame_s
         rate[0] = rate[min(1, len(rate) - 1)]
-        force = np.ascontiguousarray(run.acceleration)
+        # A reading of zero is no reading to this library: the gyroscope alone leads across silences.
+        force = np.nan_to_num(np.ascontiguousarray(run.acceleration))
         sigma = self._sigma
         if sigma > LARGE_SIGMA:
             forward = self._fresh()

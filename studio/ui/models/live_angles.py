@@ -10,7 +10,7 @@ from PySide6.QtCore import QObject, Signal
 
 from studio.analysis.joint_angles import JointAngle, joint_angles
 from studio.core.body import PLACES, Skeleton
-from studio.core.live_solver import Pose
+from studio.core.live_frames import Pose
 from studio.core.pose import Motion
 from studio.core.take import Alignment
 
