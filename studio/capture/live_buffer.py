@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from studio.core.live_solver import Pose
+from studio.core.live_frames import Pose
 from studio.core.sample import Flag, Quaternion, Sample, SensorId
 
 KEPT = 60.0  # s
