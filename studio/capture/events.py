@@ -33,8 +33,13 @@ class LinkEnded:
 
     source: str
     error: StudioError | None
-    mistake: BaseException | None = None
-    """Ours, for the crash report: what was recorded is to be saved first."""
+
+
+@dataclass(frozen=True, slots=True)
+class MistakeMade:
+    """Something of ours broke: to be raised where it ends in a crash report, once what was recorded is saved."""
+
+    mistake: BaseException
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,4 +82,14 @@ class AlignmentRefused:
     """What was found all the same: the limbs, when only their headings are missing."""
 
 
-Event = SensorFound | LinkNoted | LinkEnded | RecordingStarted | RecordingEnded | MarkSet | Aligned | AlignmentRefused
+Event = (
+    SensorFound
+    | LinkNoted
+    | LinkEnded
+    | MistakeMade
+    | RecordingStarted
+    | RecordingEnded
+    | MarkSet
+    | Aligned
+    | AlignmentRefused
+)

@@ -314,7 +314,7 @@ class LiveSession:
         problem = task.exception()
         error = self._ended_by[source] = problem if isinstance(problem, LinkError) else None
         self._keep_mistake(task)
-        self.events.put(events.LinkEnded(source, error, None if problem is error else problem))
+        self.events.put(events.LinkEnded(source, error))
         if all(task.done() for task in self._tasks.values()):
             self._ended.set()
 
@@ -323,6 +323,7 @@ class LiveSession:
         problem = None if task.cancelled() else task.exception()
         if problem is not None and not isinstance(problem, LinkError):
             self._mistake = self._mistake or problem
+            self.events.put(events.MistakeMade(problem))
             self._ended.set()
 
     async def _watch(self) -> None:

@@ -48,8 +48,6 @@ class RecordProgress:
             yield "Headings are not known yet: a bow tells them." if waits else one_line(event.error)
         elif isinstance(event, events.LinkNoted) and event.kind in NOTED:
             yield NOTED[event.kind].format_map(_in_words(event.facts, worn))
-        elif isinstance(event, events.LinkEnded) and event.error is not None:
-            yield one_line(event.error)
 
 
 def summary(seconds: float, sensors: int, loss: float) -> str:

@@ -59,6 +59,7 @@ def _record(request: RecordRequest) -> Recorded:
                 with contextlib.suppress(TimeoutError):
                     future.exception(WAIT)
                 _tell(session, progress)
+            _tell(session, progress)
             return future.result()
         finally:
             runtime.stop()

@@ -67,11 +67,41 @@ def test_a_mistake_while_reading_ends_the_recording_and_is_not_lost(tmp_path, le
 
         saved = await session.stop_recording()
         assert saved.samples == len(between(pieces, 0, 2))
-        (ended,) = events_of(session, events.LinkEnded)
-        assert (ended.error, type(ended.mistake)) == (None, ZeroDivisionError)
+        told = [*iter_events(session)]
+        assert [event.error for event in told if isinstance(event, events.LinkEnded)] == [None]
+        assert [type(event.mistake) for event in told if isinstance(event, events.MistakeMade)] == [ZeroDivisionError]
         await session.disconnect()
         assert isinstance(session.take_mistake(), ZeroDivisionError)
         assert session.take_mistake() is None
+
+    run(story())
+
+
+class Puzzling(HandFed):
+    """A port that cannot be asked any more whether it is there."""
+
+    place, is_connected, dropped = "ttyA", True, 0
+    readable = 1
+
+    @property
+    def interruptions(self) -> int:
+        return 0 // self.readable
+
+
+def test_a_mistake_while_watching_ends_the_recording_too(tmp_path, legs):
+    take, pieces, _ = legs
+
+    async def story():
+        link = Puzzling()
+        session = await connected(link, take, between(pieces, 0, 1))
+        recording = await start(session, tmp_path)
+
+        link.readable = 0
+
+        await session.finished(recording)
+        assert [type(event.mistake) for event in events_of(session, events.MistakeMade)] == [ZeroDivisionError]
+        assert (await session.stop_recording()).verified
+        await session.disconnect()
 
     run(story())
 
@@ -104,7 +134,6 @@ def test_a_lost_source_is_told_and_is_the_reason_of_the_end(tmp_path, legs):
 
         (ended,) = events_of(session, events.LinkEnded)
         assert isinstance(ended.error, PortGone)
-        assert ended.mistake is None
         assert session.lost() is ended.error
         await session.stop_recording()
         await session.disconnect()

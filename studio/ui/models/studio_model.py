@@ -333,6 +333,9 @@ class StudioModel(QObject):
             self.recording_full.emit()
             if event.error is not None and event.source == self.source and not self.connecting:
                 self._lost(event.error)
+        elif isinstance(event, events.MistakeMade):
+            self.recording_full.emit()
+            raise event.mistake
 
 
 def _calibration(info: SensorInfo, rest: Rest, date: str) -> Calibration:
