@@ -58,6 +58,8 @@ def test_a_question_that_a_lost_port_does_not_take_is_a_lost_question():
     async def story() -> int:
         intake = LinkIntake(deaf := Deaf())
         assert [sample for piece in pieces for sample in intake.samples(piece)]
+        await intake.ask(-1.0)
+        assert deaf.asked == 1  # nobody else is asked while the port is gone
         for now in range(3 * QUESTIONS):
             await intake.ask(float(now))
         return deaf.asked

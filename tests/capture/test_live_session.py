@@ -9,12 +9,13 @@ import numpy as np
 import pytest
 
 from studio.capture import events
+from studio.capture.headless import RecordRequest, record
 from studio.capture.live_session import LiveSession
 from studio.core import rotation
 from studio.core.body import Place
-from studio.core.errors import AlreadyRecording, HeadingsUnknown, MovedDuringHold, NoData, PortGone
+from studio.core.errors import AlreadyRecording, HeadingsUnknown, MovedDuringHold, NoData, PortGone, PoseMissing
 from studio.core.sample import Correction
-from studio.core.take import Assignment, Calibration, CarriedAlignment
+from studio.core.take import Alignment, Assignment, Calibration, CarriedAlignment
 from studio.storage.take_reader import read_events, read_take
 from tests.capture.known_suit import (
     LOWER,
@@ -142,13 +143,17 @@ def test_a_lost_source_is_told_and_is_the_reason_of_the_end(tmp_path, legs):
     run(story())
 
 
-def test_one_of_two_sources_lost_ends_nothing(tmp_path, legs):
-    take, pieces, _ = legs
+@pytest.mark.parametrize("lost_is_first", [True, False])
+def test_one_of_two_sources_lost_ends_nothing(tmp_path, legs, lost_is_first):
+    _, pieces, _ = legs
 
     async def story():
         link, other = HandFed(), HandFed()
-        session = await connected(link, take, between(pieces, 0, 1))
-        await session.connect("other", other)
+        session = LiveSession()
+        for source, one in (("other", other), ("hand", link)) if lost_is_first else (("hand", link), ("other", other)):
+            await session.connect(source, one)
+        await link.give(between(pieces, 0, 1))
+        await session.sensors_known()
         await start(session, tmp_path)
 
         await other.break_off(PortGone("ttyB"))
@@ -157,6 +162,84 @@ def test_one_of_two_sources_lost_ends_nothing(tmp_path, legs):
         await link.give(between(pieces, 1, 2))
         saved = await session.stop_recording()
         assert saved.samples == len(between(pieces, 0, 2))
+        await session.disconnect()
+
+    run(story())
+
+
+def test_a_source_that_was_lost_and_is_opened_again_is_not_lost(tmp_path, legs):
+    take, pieces, _ = legs
+
+    async def story():
+        link, again = HandFed(), HandFed()
+        session = await connected(link, take, between(pieces, 0, 1))
+        await link.break_off(PortGone("ttyA"))
+        await session.connect("hand", again)
+
+        assert session.lost() is None
+        recording = await start(session, tmp_path)
+        with pytest.raises(TimeoutError):
+            await asyncio.wait_for(session.finished(recording), 0.02)
+        await session.stop_recording()
+        await again.give(between(pieces, 1, 2))
+        await session.disconnect()
+
+    run(story())
+
+
+def test_the_end_of_a_link_that_was_replaced_is_no_news(legs):
+    take, pieces, _ = legs
+
+    async def story():
+        link, again = HandFed(), HandFed()
+        session = await connected(link, take, between(pieces, 0, 1))
+        await session.connect("hand", again)
+
+        await link.break_off(PortGone("ttyA"))
+
+        assert events_of(session, events.LinkEnded) == []
+        assert session.lost() is None
+        await session.disconnect()
+
+    run(story())
+
+
+def test_sensors_are_known_when_no_new_one_has_come_for_half_a_second(legs):
+    _, pieces, _ = legs
+    late = sensor_of(Place.LEFT_FOOT)
+
+    async def story():
+        link = HandFed()
+        session = LiveSession()
+        await session.connect("hand", link)
+        await link.give([one for one in between(pieces, 0, 0.4) if one[1].info.sensor != late])
+        await link.give(between(pieces, 0.4, 0.85))
+        with pytest.raises(TimeoutError):
+            await asyncio.wait_for(session.sensors_known(), 0.05)
+
+        await link.give(between(pieces, 0.85, 0.95))
+
+        await session.sensors_known(patience=0.5)
+        assert len(session.infos) == len(LOWER)
+        await session.disconnect()
+
+    run(story())
+
+
+def test_nothing_is_in_two_takes(tmp_path, legs):
+    take, pieces, _ = legs
+
+    async def story():
+        link = HandFed(paced=False)
+        session = await connected(link, take, between(pieces, 0, 2))
+        await start(session, tmp_path)
+        await link.give(between(pieces, 2, 3))
+        first = await session.stop_recording()
+        await link.give(between(pieces, 3, 4))
+        await start(session, tmp_path)
+        second = await session.stop_recording()
+
+        assert (first.samples, second.samples) == (len(between(pieces, 0, 3)), len(between(pieces, 3, 4)))
         await session.disconnect()
 
     run(story())
@@ -408,7 +491,7 @@ def test_other_places_need_another_hold(legs):
 
         assert session.buffer.newest()[1] is None
         refused = (await session.held(replace(BOW_HOLD, time=8.2, end=9.2))).error
-        assert refused is not None  # the old N-pose is forgotten
+        assert isinstance(refused, PoseMissing)  # the old N-pose is forgotten
         await session.disconnect()
 
     run(story())
@@ -477,13 +560,102 @@ def test_a_take_begun_after_the_holds_knows_how_each_sensor_was_turned_at_its_fi
     run(story())
 
 
-def test_a_take_that_holds_the_poses_itself_carries_nothing(tmp_path, legs):
+def test_other_places_are_aligned_by_the_same_holds_while_their_samples_are_kept(tmp_path, legs):
     take, pieces, _ = legs
+    fewer = {place: sensor for place, sensor in take.setup.assignment.sensors.items() if place is not Place.PELVIS}
 
     async def story():
         link = HandFed(paced=False)
         session = await connected(link, take, between(pieces, 0, 1), pre_roll=math.inf)
         await aligned(session, link, pieces)
+        events_of(session, events.Aligned)
+
+        session.adopt(replace(take.setup, assignment=Assignment(fewer)))
+
+        (event,) = events_of(session, events.Aligned)
+        assert set(event.alignment.limbs) == set(fewer)
+        await start(session, tmp_path)
+        kept, _ = read_take((await session.stop_recording()).folder)
+        assert [mark.label for mark in kept.poses()] == ["n", "bow"]
+        await session.disconnect()
+
+    run(story())
+
+
+@pytest.mark.parametrize(("pre_roll", "is_carried"), [(math.inf, True), (2.0, False)])
+def test_what_a_replayed_take_carries_stays_with_its_first_sample(tmp_path, legs, pre_roll, is_carried):
+    take, pieces, _ = legs
+    carried = CarriedAlignment(Alignment("n", -9.0, -6.0, {}), 0.0, {})
+
+    async def story():
+        link = HandFed(paced=False)
+        session = await connected(link, take, between(pieces, 0, 1), pre_roll=pre_roll)
+        session.adopt(replace(take.setup, carried=carried))
+        await link.give(between(pieces, 1, 5))
+        await start(session, tmp_path)
+        kept, _ = read_take((await session.stop_recording()).folder)
+
+        assert kept.setup.carried == (carried if is_carried else None)
+        await session.disconnect()
+
+    run(story())
+
+
+def test_a_mark_is_set_at_the_newest_sample_also_when_an_older_one_came_last(legs):
+    take, pieces, _ = legs
+
+    async def story():
+        link = HandFed(paced=False)
+        session = await connected(link, take, between(pieces, 0, 1))
+        await link.give(between(pieces, 2, 3))
+        await link.give(between(pieces, 1, 1.1))
+
+        assert session.mark("turn").time == pytest.approx(2.98)
+        await session.disconnect()
+
+    run(story())
+
+
+def test_a_source_with_a_clock_of_its_own_is_not_ended_by_ours(tmp_path, legs):
+    take, pieces, _ = legs
+
+    async def story():
+        link, other = HandFed(paced=False), HandFed(paced=True)
+        session = await connected(link, take, between(pieces, 0, 1))
+        await session.connect("other", other)
+        recording = await start(session, tmp_path, seconds=10.0)
+
+        session.look(time.perf_counter() + 1000.0)
+
+        assert not recording.full.is_set()
+        await session.stop_recording()
+        await session.disconnect()
+
+    run(story())
+
+
+def test_counts_and_clocks_are_kept_every_ten_seconds_and_at_the_end(tmp_path):
+    request = RecordRequest("synthetic:walk?tags=1&speed=max", 12.0, tmp_path, "P014", "walk")
+    recorded = asyncio.run(record(request, LiveSession(pre_roll=math.inf), asyncio.Event()))
+
+    noted = [event for event in read_events(recorded.saved.folder) if event.kind == "health"]
+
+    assert len(noted) == 3
+    assert noted[1].received - noted[0].received == pytest.approx(10.0, abs=1.0)
+    assert noted[2].received >= recorded.saved.duration
+    assert noted[-1].facts["received"] >= recorded.saved.samples
+
+
+def test_a_take_that_holds_the_poses_itself_carries_nothing(tmp_path, legs):
+    take, pieces, _ = legs
+
+    async def story():
+        link = HandFed(paced=False)
+        # The first kept sample is the first of the hold.
+        session = await connected(link, take, between(pieces, 1, 1.9), pre_roll=math.inf)
+        await link.give(between(pieces, 1.9, 8.5))
+        await session.held(N_HOLD)
+        await session.held(BOW_HOLD)
         await start(session, tmp_path)
         folder = (await session.stop_recording()).folder
         kept, _ = read_take(folder)
@@ -495,7 +667,8 @@ def test_a_take_that_holds_the_poses_itself_carries_nothing(tmp_path, legs):
     run(story())
 
 
-def test_a_sensor_silent_when_the_take_begins_carries_no_attitude(tmp_path, legs):
+@pytest.mark.parametrize("silence", [(8.5, 14.0), (11.87, 12.13)])
+def test_a_sensor_silent_when_the_take_begins_carries_no_attitude(tmp_path, legs, silence):
     take, pieces, _ = legs
     silent = sensor_of(Place.LEFT_FOOT)
 
@@ -503,7 +676,14 @@ def test_a_sensor_silent_when_the_take_begins_carries_no_attitude(tmp_path, legs
         link = HandFed(paced=False)
         session = await connected(link, take, between(pieces, 0, 1))
         await aligned(session, link, pieces)
-        await link.give([one for one in between(pieces, 8.5, 14) if one[1].info.sensor != silent])
+        since, until = silence
+        await link.give(
+            [
+                (received, known)
+                for received, known in between(pieces, 8.5, 14)
+                if known.info.sensor != silent or not since <= received < until
+            ]
+        )
         await start(session, tmp_path)
         carried = carried_of((await session.stop_recording()).folder)
 

@@ -1,12 +1,17 @@
 """Until when a recording keeps what comes, and how it ends when nothing comes."""
 
 import asyncio
+import contextlib
+import threading
+from dataclasses import replace
 
 import pytest
 
 from studio.capture.recording import HEALTH_EVERY, MARGIN, Recording
+from studio.core.errors import DiskFull
 from studio.core.take import Mark
 from studio.storage.take_reader import read_events, read_take
+from tests.storage.disks import FullDisk
 from tests.storage.recordings import START, TAGS, info, sample, start_writing
 
 
@@ -79,6 +84,48 @@ def test_into_which_nothing_ever_came_ends_too(recording):
     recording.look(START - 5.0 + 1.0 + MARGIN + 0.01, float("-inf"))
 
     assert recording.full.is_set()
+
+
+def test_what_becomes_known_of_a_sensor_is_kept(recording):
+    keep(recording, 0)
+    recording.sample(sample(TAGS[0], 1), replace(info(TAGS[0]), number=9))
+
+    take, _ = read_take(recording.writer.stop().result(30).folder)
+
+    assert take.streams[0].info.number == 9
+
+
+def test_a_mark_before_the_first_sample_is_kept(recording):
+    recording.mark(Mark(START, "record"))
+
+    take, _ = read_take(recording.writer.stop().result(30).folder)
+
+    assert [mark.kind for mark in take.marks] == ["record"]
+
+
+@pytest.mark.parametrize("sends", [True, False])
+def test_a_disk_that_refuses_ends_it_whether_something_comes_or_not(tmp_path, sends):
+    async def story():
+        disk = FullDisk(1, for_good=True)
+        recording = Recording(start_writing(tmp_path, disk, tags=0), float("inf"), START)
+        keep(recording, 0)
+        while recording.writer.failure is None:  # noqa: ASYNC110  # the writer is a thread that tells nobody
+            await asyncio.sleep(0)
+        assert not recording.full.is_set()
+
+        if sends:
+            keep(recording, 1)
+        else:
+            recording.look(START, START)
+
+        assert recording.full.is_set()
+        with contextlib.suppress(DiskFull):
+            recording.writer.stop().result(30)
+        for thread in threading.enumerate():
+            if thread.name == "take-writer":
+                thread.join(30)
+
+    asyncio.run(story())
 
 
 def test_counts_are_due_every_ten_seconds(recording):
