@@ -635,14 +635,15 @@ def test_a_source_with_a_clock_of_its_own_is_not_ended_by_ours(tmp_path, legs):
 
 
 def test_counts_and_clocks_are_kept_every_ten_seconds_and_at_the_end(tmp_path):
-    request = RecordRequest("synthetic:walk?tags=1&speed=max", 12.0, tmp_path, "P014", "walk")
+    request = RecordRequest("synthetic:walk?tags=1&speed=max", 30.0, tmp_path, "P014", "walk")
     recorded = asyncio.run(record(request, LiveSession(pre_roll=math.inf), asyncio.Event()))
 
     noted = [event for event in read_events(recorded.saved.folder) if event.kind == "health"]
 
-    assert len(noted) == 3
-    assert noted[1].received - noted[0].received == pytest.approx(10.0, abs=1.0)
-    assert noted[2].received >= recorded.saved.duration
+    *regular, last = [event.received for event in noted]
+    assert len(regular) >= 2
+    assert np.diff(regular) == pytest.approx(10.0, abs=1.5)
+    assert last >= recorded.saved.duration
     assert noted[-1].facts["received"] >= recorded.saved.samples
 
 
