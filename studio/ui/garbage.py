@@ -1,6 +1,6 @@
 """Python's garbage is collected on the Qt thread only: widgets must not be taken apart by another one.
 
-Automatic collection runs on whichever thread happens to allocate; on the acquisition thread it would also delay samples.
+Automatic collection runs on whichever thread happens to allocate; on the acquisition thread it would delay samples.
 """
 
 import gc

@@ -204,11 +204,11 @@ class StudioWindow(QObject):
         model.sensors_changed.connect(self._show_sensors)
         model.setup_changed.connect(self._show_sensors)
         self.capture.take_saved.connect(self._on_saved)
-        self.capture.review_wanted.connect(self._review)
+        self.capture.review_wanted.connect(self.review_take)
         self.capture.connect_wanted.connect(self._connect)
         self.capture.bad_wanted.connect(self._on_bad)
         self.home.connect_wanted.connect(self._on_own_sensors)
-        self.home.review_wanted.connect(self._review)
+        self.home.review_wanted.connect(self.review_take)
         self.home.library_changed.connect(self.review.read_library)
         self.review.library_read.connect(self._on_library)
         self.review.export_wanted.connect(self._on_export)
@@ -322,7 +322,8 @@ class StudioWindow(QObject):
         self.review.read_library()
         self.people.read_library()
 
-    def _review(self, folder: Path) -> None:
+    def review_take(self, folder: Path) -> None:
+        """Look at a take."""
         self.go_to("review")
         self.review.open_take(folder)
 

@@ -185,8 +185,7 @@ TEMPLATES = _by_id(
     Message(
         "cal.pose_outside",
         "The {pose} cannot be used.",
-        "It was said to last from {from_s} to {to_s}; "
-        "the take lasts {take_s} and holds too few samples of that time.",
+        "It was said to last from {from_s} to {to_s}; the take lasts {take_s} and holds too few samples of that time.",
         "Give a time of at least 1 s inside the take.",
     ),
     Message(
@@ -318,8 +317,14 @@ TEMPLATES = _by_id(
     Message(
         "exp.target",
         "{path} cannot be written.",
-        "It is open in another program, or the folder does not allow it.",
-        "Close the other program, or choose another name.",
+        "The reason: {reason}.",
+        "Choose another name, or a folder that is there and that you may write to.",
+    ),
+    Message(
+        "exp.taken",
+        "{path} is there already.",
+        "It was not made by this studio from this take, or it was changed since.",
+        "Choose another name, or add --overwrite to replace it.",
     ),
     Message(
         "exp.differs",
@@ -359,6 +364,7 @@ MESSAGE_OF: dict[type[StudioError], str | Callable[[Any], str]] = {
     errors.FormatUnknown: "imp.format",
     errors.NothingToExport: "exp.nothing",
     errors.CannotWrite: "exp.target",
+    errors.TargetTaken: "exp.taken",
     errors.ReadBackDiffers: "exp.differs",
 }
 """Which message tells of which error; a function where the facts decide."""

@@ -1,6 +1,4 @@
-"""Somebody who never saw the studio: starts it, records the figure that walks, looks at it, and has a BVH; by clicks."""
-
-import time
+"""Somebody who never saw the studio starts it, records the figure that walks, and has a BVH; by clicks."""
 
 import numpy as np
 from PySide6.QtCore import Qt
@@ -42,10 +40,10 @@ def test_from_first_start_to_a_bvh_by_clicks_alone(qtbot, tmp_path):
         qtbot.waitUntil(lambda: studio.recorder.phase is Phase.RECORDING, timeout=SLOW)
         qtbot.wait(2000)
         click(studio.capture_page.record)
-        qtbot.waitUntil(lambda: window.toast.isVisible(), timeout=SLOW)
+        qtbot.waitUntil(window.toast.isVisible, timeout=SLOW)
 
         click(button(window.toast, "Review"))
-        qtbot.waitUntil(lambda: studio.review_page.transport.play.isEnabled(), timeout=SLOW)
+        qtbot.waitUntil(studio.review_page.transport.play.isEnabled, timeout=SLOW)
         click(studio.review_page.transport.play)
         qtbot.waitUntil(lambda: studio.review_page.playhead.time > 0.3, timeout=SLOW)
         click(studio.review_page.transport.play)
@@ -53,7 +51,7 @@ def test_from_first_start_to_a_bvh_by_clicks_alone(qtbot, tmp_path):
         click(studio.review_page.measures.export)
         click(studio.export_page.cards["blender"])
         click(studio.export_page.start)
-        qtbot.waitUntil(lambda: studio.export_page.result.show_file.isVisible(), timeout=SLOW)
+        qtbot.waitUntil(studio.export_page.result.show_file.isVisible, timeout=SLOW)
 
         files = list((tmp_path / "exports").glob("*.bvh"))
         assert len(files) == 1
@@ -101,7 +99,7 @@ def test_nothing_is_lost_while_the_window_stands_still(qtbot, tmp_path):
         qtbot.waitUntil(lambda: has_body(studio), timeout=SLOW)
         click(studio.window.strip.record)
         qtbot.waitUntil(lambda: studio.recorder.phase is Phase.RECORDING, timeout=SLOW)
-        time.sleep(0.5)  # what a file dialog of a slow drive does to the Qt thread
+        QTest.qSleep(500)  # what a file dialog of a slow drive does to the Qt thread
         qtbot.wait(600)
         click(studio.window.strip.record)
         qtbot.waitUntil(lambda: studio.review_page.takes.model.total == 1, timeout=SLOW)
@@ -122,7 +120,7 @@ def test_without_sensors_the_record_key_says_why_and_makes_no_take(qtbot, tmp_pa
 def test_the_sample_take_opens_by_one_click(qtbot, tmp_path):
     with running_studio(tmp_path) as studio:
         click(studio.home_page.sample)
-        qtbot.waitUntil(lambda: studio.review_page.transport.play.isEnabled(), timeout=2 * SLOW)
+        qtbot.waitUntil(studio.review_page.transport.play.isEnabled, timeout=2 * SLOW)
         assert studio.review_page.takes.model.total == 1
         studio.go_to("home")
         click(studio.home_page.sample)

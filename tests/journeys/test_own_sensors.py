@@ -76,8 +76,8 @@ def test_tags_are_connected_assigned_calibrated_and_captured(qtbot, tmp_path):
         assert Place.LEFT_FOOT in summary.places
         assert (tmp_path / "takes" / "P014" / "person.json").is_file(), "who wears what is remembered"
 
-        studio._review(summary.folder)
-        qtbot.waitUntil(lambda: studio.review_page.transport.play.isEnabled(), timeout=SLOW)
+        studio.review_take(summary.folder)
+        qtbot.waitUntil(studio.review_page.transport.play.isEnabled, timeout=SLOW)
 
 
 def test_a_port_that_is_pulled_out_is_told_and_the_take_is_kept(qtbot, tmp_path):
@@ -100,5 +100,5 @@ def test_a_port_that_cannot_be_opened_is_refused_on_the_page(qtbot, tmp_path):
     with running_studio(tmp_path, source="") as studio:
         studio.go_to("connect")
         studio.model.open("serial:/dev/no-such-port")
-        qtbot.waitUntil(lambda: studio.connect_page.retry.isVisible(), timeout=SLOW)
+        qtbot.waitUntil(studio.connect_page.retry.isVisible, timeout=SLOW)
         assert studio.model.source == "" or not studio.model.infos

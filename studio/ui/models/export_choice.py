@@ -66,6 +66,8 @@ class Item(NamedTuple):
 
     take: Path
     target: Path
+    replace: bool
+    """Something stands there, and the page said that it will be replaced."""
 
 
 @dataclass(frozen=True)
@@ -84,7 +86,7 @@ class ExportChoice(QObject):
     changed = Signal()
 
     def __init__(self, exists: Callable[[Path], bool], parent: QObject | None = None) -> None:
-        """``exists`` tells whether there is a file at a path."""
+        """``exists`` tells whether there is a file at a path: ``export.file_target.is_taken``."""
         super().__init__(parent)
         self.takes: tuple[TakeSummary, ...] = ()
         self.format = FORMATS[0]
@@ -164,12 +166,12 @@ class ExportChoice(QObject):
         for take in self.takes:
             target = self._typed() if self._name and len(self.takes) == 1 else self._suggested(take, taken)
             taken.add(target)
-            items.append(Item(take.folder, target))
+            items.append(Item(take.folder, target, self._exists(target)))
         return tuple(items)
 
     def replaced(self) -> tuple[Path, ...]:
         """Return the files that stand there now and will be replaced."""
-        return tuple(item.target for item in self.items() if self._exists(item.target))
+        return tuple(item.target for item in self.items() if item.replace)
 
     def values(self) -> ExportValues:
         """Return the order."""

@@ -99,6 +99,8 @@ class SensorTableModel(QAbstractTableModel):
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self.can_rename = False
+        self.is_worn = False
+        """Whether the body is calibrated: nobody waits for the tags to lie still."""
         self._rows: list[_Row] = []
         self._place_words: dict[Place, str] = {place: place.value.replace("_", " ") for place in Place}
         self._moved: SensorId | None = None
@@ -384,7 +386,7 @@ class SensorTableModel(QAbstractTableModel):
         if not row.info.has_rate:
             return "–", State.MUTED
         if row.rest.held <= 0:
-            return self.tr("waits for rest"), State.MUTED
+            return ("–" if self.is_worn else self.tr("waits for rest")), State.MUTED
         return self.tr("{n:.0f} of {all:.0f} s").format(n=row.rest.held, all=NEEDED), State.PLAIN
 
 

@@ -95,6 +95,7 @@ class StudioModel(QObject):
         self.heard_at = -math.inf
         """s, clock of ``now``: when a sample of any sensor last came in."""
         self._received = 0
+        self._why_closed: StudioError | None = None
 
     @property
     def buffer(self) -> LiveBuffer:
@@ -290,13 +291,17 @@ class StudioModel(QObject):
         self._lost(error)
 
     def _lost(self, error: StudioError) -> None:
-        """The source is closed; why is told."""
+        """Close the source, and then tell why."""
+        self._why_closed = error
         self._ask(self._disconnect(), self._disconnected)
-        self.source_refused.emit(error)
 
     def _disconnected(self, _: object) -> None:
         self.source, self.connecting, self.alignment = "", False, None
+        self.health = {}
         self.source_changed.emit()
+        if self._why_closed is not None:
+            error, self._why_closed = self._why_closed, None
+            self.source_refused.emit(error)
 
     def _adopted(self, _: object) -> None:
         self.setup_changed.emit()

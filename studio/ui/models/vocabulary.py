@@ -42,6 +42,6 @@ def vocabulary(name: VocabularyName) -> Vocabulary:
         new_person=translate("Vocabulary", "New performer…"),
         session=translate("Vocabulary", "Session"),
         take=translate("Vocabulary", "Take"),
-        take_name="take",
+        take_name="motion",
         preset="bvh",
     )

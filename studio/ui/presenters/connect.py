@@ -102,6 +102,7 @@ class ConnectPresenter(QObject):
         infos = {s: replace(info, label=self._names.get(s) or info.label) for s, info in model.infos.items()}
         places: Mapping[SensorId, Place] = {s: place for place, s in model.setup.assignment.sensors.items()}
         self._page.show_sensors(model.health, infos, places, now)
+        self._page.sensors.is_worn = model.alignment is not None
         self._page.show_rest(self.rest)
         if model.alignment is not None:
             self._page.show_worn()

@@ -13,6 +13,7 @@ from PySide6.QtWidgets import (
     QLabel,
     QLineEdit,
     QPushButton,
+    QScrollArea,
     QSizePolicy,
     QVBoxLayout,
     QWidget,
@@ -162,10 +163,16 @@ class CapturePage(QWidget):
         page.addLayout(left, 1)
         page.addWidget(self._build_side())
 
-    def _build_side(self) -> QFrame:
-        self._side = QFrame(self)
-        self._side.setProperty("ground", "panel")
-        column = QVBoxLayout(self._side)
+    def _build_side(self) -> QScrollArea:
+        self._side = QScrollArea(self)
+        self._side.setWidgetResizable(True)
+        self._side.setFrameShape(QFrame.Shape.NoFrame)
+        self._side.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self._side.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        inside = QFrame(self._side)
+        inside.setProperty("ground", "panel")
+        self._side.setWidget(inside)
+        column = QVBoxLayout(inside)
         column.setContentsMargins(GAP_WIDE, GAP_WIDE, GAP_WIDE, GAP_WIDE)
         column.setSpacing(GAP)
         self._build_recording(column)

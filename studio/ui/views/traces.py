@@ -22,7 +22,7 @@ from studio.ui.views.plots.angle_plot import AngleCurve, AnglePlot
 from studio.ui.views.plots.signal_plot import SignalPlot
 
 COLUMNS = 3
-PLOT_HEIGHT = 96  # px at 100 % text
+PLOT_HEIGHT = 124  # px at 100 % text
 
 
 class Traces(QWidget):
@@ -34,6 +34,7 @@ class Traces(QWidget):
         super().__init__(parent)
         self._theme = theme
         self._plots: dict[SensorId, SignalPlot] = {}
+        self._names: dict[SensorId, str] = {}
         self.angles = AnglePlot(theme, self)
         self.kinds = QButtonGroup(self)
         self._signal = Signal.TURNING
@@ -60,12 +61,12 @@ class Traces(QWidget):
                 plot.set_signal(self._signal)
                 self._grid.addWidget(plot, row // COLUMNS, row % COLUMNS)
             self._fit()
-        for sensor, name in names.items():
-            self._plots[sensor].set_sensor(name)
+        self._names = dict(names)
+        self._entitle()
 
     def visible_sensors(self) -> tuple[SensorId, ...]:
         """Return the sensors whose plots can be seen now."""
-        return tuple(sensor for sensor, plot in self._plots.items() if not plot.visibleRegion().isEmpty())
+        return tuple(sensor for sensor, plot in self._plots.items() if plot.is_seen())
 
     def show_windows(self, windows: Mapping[SensorId, Window], now: float) -> None:
         """Show the newest samples of the visible sensors; ``now`` in s is the right end."""
@@ -116,7 +117,14 @@ class Traces(QWidget):
             self._signal = (Signal.TURNING, Signal.FORCE, Signal.ORIENTATION)[number - 1]
             for plot in self._plots.values():
                 plot.set_signal(self._signal)
+            self._entitle()
         self.shown_changed.emit()
+
+    def _entitle(self) -> None:
+        """Write above each plot whose it is: what is plotted stands above all of them."""
+        for sensor, name in self._names.items():
+            self._plots[sensor].set_sensor(name)
+            self._plots[sensor].set_title(name)
 
     def _fit(self) -> None:
         height = round(PLOT_HEIGHT * max(self._theme.text_scale, 1.0))
