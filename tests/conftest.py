@@ -9,6 +9,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 ROOT = Path(__file__).resolve().parents[1]
+ENDING = 5.0  # s; a thread whose future has its result may still have its last instructions before it
 WORTH_A_LOOK = 400  # lines; tests/test_conventions.py refuses more than 600
 
 # No screen is needed: where there is none, Qt paints into memory.
@@ -35,7 +36,10 @@ def no_thread_is_left() -> Iterator[None]:
     """Fail the test that ends while a thread it started still runs."""
     before = set(threading.enumerate())
     yield
-    left = [thread.name for thread in threading.enumerate() if thread not in before and thread.is_alive()]
+    started = [thread for thread in threading.enumerate() if thread not in before]
+    for thread in started:
+        thread.join(ENDING)
+    left = [thread.name for thread in started if thread.is_alive()]
     assert not left, f"threads left behind: {', '.join(left)}"
 
 

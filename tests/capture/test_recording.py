@@ -2,7 +2,6 @@
 
 import asyncio
 import contextlib
-import threading
 from dataclasses import replace
 
 import pytest
@@ -121,9 +120,6 @@ def test_a_disk_that_refuses_ends_it_whether_something_comes_or_not(tmp_path, se
         assert recording.full.is_set()
         with contextlib.suppress(DiskFull):
             recording.writer.stop().result(30)
-        for thread in threading.enumerate():
-            if thread.name == "take-writer":
-                thread.join(30)
 
     asyncio.run(story())
 
