@@ -20,7 +20,7 @@ from studio.core.take import Alignment, Calibration, Setup, Take
 from studio.core.track import SensorTrack
 
 EVER = (float("-inf"), float("inf"))  # s
-CHUNK = 4096  # frames at a time: the working set stays in the cache
+CHUNK = 1024  # frames at a time: the working set stays in the cache
 FORGOTTEN_AT_ONCE = 1024  # rows of a sensor; shifting what is kept costs more than keeping
 
 
