@@ -124,10 +124,12 @@ class SerialLink:
     def _read(self) -> None:
         """Hand over bytes until closing; the reader's thread, the only one that opens and closes the port."""
         self._greet()
+        last = waited = False
         while True:
+            waited = last  # once more for what the system has not passed on yet
             last = self._closing.is_set()  # asked before reading: what came until then is still handed over
             try:
-                data = self._port.read(self._port.in_waiting or (0 if last else 1))
+                data = self._port.read(self._port.in_waiting or (0 if waited else 1))
             except OSError:
                 # pyserial: SerialException from read, OSError(5) from in_waiting, again with every call.
                 self._port.close()

@@ -1,6 +1,7 @@
 """Exact sensors on a body as a source of a live session, and a session that is asked step by step."""
 
 import asyncio
+import math
 from collections.abc import Callable, Coroutine, Iterator
 from dataclasses import replace
 from typing import Any
@@ -98,5 +99,23 @@ def replayed(pieces: Iterator[tuple[float, Known]] | Told) -> ReplayLink:
 
 def events_of(session: LiveSession, kind: type) -> list[Any]:
     """Take what the session has told and return the events of one kind."""
-    seen = [session.events.get() for _ in range(session.events.qsize())]
-    return [event for event in seen if isinstance(event, kind)]
+    return [event for event in iter_events(session) if isinstance(event, kind)]
+
+
+def iter_events(session):
+    for _ in range(session.events.qsize()):
+        yield session.events.get()
+
+
+async def connected(link, take, pieces, *, source="hand", pre_roll=2.0):
+    """Return a session that has heard all sensors and has the setup of the take."""
+    session = LiveSession(pre_roll=pre_roll)
+    await session.connect(source, link)
+    await link.give(pieces)
+    await session.sensors_known()
+    session.adopt(take.setup)
+    return session
+
+
+def start(session, library, seconds=math.inf):
+    return session.start_recording(library, "P014", "walk", "hand", seconds)
