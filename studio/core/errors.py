@@ -11,7 +11,7 @@ The tree::
     ├── TakeFileError     NotATake · Damaged · WrittenByNewerStudio · TakeUnsafe · TruthMissing
     ├── RecordingError    AlreadyRecording · StoppedEarly · DiskFull · FolderNotWritable · VerificationFailed
     ├── ImportFailed      RecordingUnreadable · MapFileInvalid · FormatUnknown
-    └── ExportError       NothingToExport · CannotWrite · ReadBackDiffers
+    └── ExportError       NothingToExport · CannotWrite · TargetTaken · ReadBackDiffers
 
 A malformed or lost packet is not an error but a count (``acquisition.health``). Our own mistakes
 stay ``ValueError`` or ``AssertionError``. Sentences for people live in ``ui.wording``.
@@ -292,6 +292,15 @@ class NothingToExport(ExportError):
 @dataclass(eq=False)
 class CannotWrite(ExportError):
     """The target file cannot be written."""
+
+    path: str
+    reason: str
+    """one clause, lower case, without full stop"""
+
+
+@dataclass(eq=False)
+class TargetTaken(ExportError):
+    """A file stands there that this studio did not write from this take, or that was changed since."""
 
     path: str
 
