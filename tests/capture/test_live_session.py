@@ -396,6 +396,27 @@ def test_a_source_with_a_clock_of_its_own_is_not_ended_by_ours(tmp_path, legs):
     run(story())
 
 
+def test_a_source_without_a_pace_waits_for_the_disk(tmp_path, legs, monkeypatch):
+    take, pieces, _ = legs
+    monkeypatch.setattr("studio.storage.take_writer.CAPACITY", 200)
+
+    async def story():
+        link = HandFed(paced=False)
+        session = await connected(link, take, between(pieces, 0, 0.55), pre_roll=0.1)
+        recording = await start(session, tmp_path)
+        await link.give(between(pieces, 0.55, 6))
+        await link.break_off(None)
+        await session.finished(recording)
+
+        kept, _ = read_take((await session.stop_recording()).folder)
+        for stream in kept.streams:
+            assert np.array_equal(np.diff(stream.frame), np.ones(len(stream) - 1))
+        assert kept.duration() > 5.4
+        await session.disconnect()
+
+    run(story())
+
+
 def test_counts_and_clocks_are_kept_every_ten_seconds_and_at_the_end(tmp_path):
     request = RecordRequest("synthetic:walk?tags=1&speed=max", 30.0, tmp_path, "P014", "walk")
     recorded = asyncio.run(record(request, LiveSession(pre_roll=math.inf), asyncio.Event()))
