@@ -15,11 +15,14 @@ from studio.core import rotation
 from studio.core.body import Place, Segment, Skeleton
 
 Array = NDArray[np.float64]
+Side = Literal["left", "right"]
 Tone = Literal["limb", "joint", "left", "right", "face"]
 
 _MODEL = 1.75  # m; the stature that the numbers below belong to
 MOST_BALLS = 7
-ARM = ("upper_arm", "forearm", "hand")
+ARM, LEG = ("upper_arm", "forearm", "hand"), ("thigh", "shank", "foot")
+OUT: dict[Side, float] = {"left": -1.0, "right": 1.0}
+"""Which way of z leads away from the body."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +59,7 @@ class Part:
 
 def body_parts() -> tuple[Part, ...]:
     """Return all parts of a body."""
-    return (*_trunk(), *_side("left"), *_side("right"))
+    return (*_trunk(), *_head(), *_arm("left"), *_leg("left"), *_arm("right"), *_leg("right"))
 
 
 def _trunk() -> tuple[Part, ...]:
@@ -100,6 +103,12 @@ def _trunk() -> tuple[Part, ...]:
             (Ball(s.Head, (0.002, -0.016, 0.0), 0.050), Ball(s.Neck, (-0.010, 0.026, 0.0), 0.055)),
             lead=-0.05,
         ),
+    )
+
+
+def _head() -> tuple[Part, ...]:
+    s = Segment
+    return (
         Part(
             "head",
             Place.HEAD,
@@ -133,23 +142,16 @@ def _trunk() -> tuple[Part, ...]:
     )
 
 
-def _side(side: Literal["left", "right"]) -> tuple[Part, ...]:
-    def segment(name: str) -> Segment:
-        return Segment[side.capitalize() + name]
-
-    def place(name: str) -> Place:
-        return Place(f"{side}_{name}")
-
-    out = -1.0 if side == "left" else 1.0
-    arm, forearm, hand = segment("Arm"), segment("ForeArm"), segment("Hand")
-    upper, lower, foot, toes = segment("UpLeg"), segment("Leg"), segment("Foot"), segment("ToeBase")
+def _arm(side: Side) -> tuple[Part, ...]:
+    place, out = _places(side), OUT[side]
+    arm, forearm, hand = (Segment[side.capitalize() + name] for name in ("Arm", "ForeArm", "Hand"))
     return (
-        _joint("shoulder", place("upper_arm"), arm, 0.060, (place("upper_arm"), Place.CHEST)),
-        _limb("upper_arm", place("upper_arm"), (Ball(arm, (0, 0, 0), 0.054), Ball(forearm, (0, 0, 0), 0.042))),
-        _joint("elbow", place("forearm"), forearm, 0.044, (place("upper_arm"), place("forearm"))),
+        _joint("shoulder", place["upper_arm"], arm, 0.060, (place["upper_arm"], Place.CHEST)),
+        _limb("upper_arm", place["upper_arm"], (Ball(arm, (0, 0, 0), 0.054), Ball(forearm, (0, 0, 0), 0.042))),
+        _joint("elbow", place["forearm"], forearm, 0.044, (place["upper_arm"], place["forearm"])),
         _limb(
             "forearm",
-            place("forearm"),
+            place["forearm"],
             (
                 Ball(forearm, (0, 0, 0), 0.041),
                 Ball(forearm, (0, 0, 0), 0.043, hand, 0.28),
@@ -158,7 +160,7 @@ def _side(side: Literal["left", "right"]) -> tuple[Part, ...]:
         ),
         Part(
             "hand",
-            place("hand"),
+            place["hand"],
             side,
             (
                 Ball(hand, (0, -0.004, 0), 0.026),
@@ -171,33 +173,40 @@ def _side(side: Literal["left", "right"]) -> tuple[Part, ...]:
         ),
         Part(
             "thumb",
-            place("hand"),
+            place["hand"],
             side,
             (Ball(hand, (0.018, -0.028, -0.006 * out), 0.017), Ball(hand, (0.058, -0.092, -0.020 * out), 0.012)),
         ),
+    )
+
+
+def _leg(side: Side) -> tuple[Part, ...]:
+    place, out = _places(side), OUT[side]
+    upper, lower, foot, toes = (Segment[side.capitalize() + name] for name in ("UpLeg", "Leg", "Foot", "ToeBase"))
+    return (
         _limb(
             "thigh",
-            place("thigh"),
+            place["thigh"],
             (
                 Ball(upper, (0, -0.01, -0.002 * out), 0.080),
                 Ball(upper, (0.008, 0, -0.002 * out), 0.073, lower, 0.35),
                 Ball(lower, (0, 0, 0), 0.054),
             ),
         ),
-        _joint("knee", place("shank"), lower, 0.0565, (place("thigh"), place("shank"))),
+        _joint("knee", place["shank"], lower, 0.0565, (place["thigh"], place["shank"])),
         _limb(
             "shank",
-            place("shank"),
+            place["shank"],
             (
                 Ball(lower, (0, 0, 0), 0.053),
                 Ball(lower, (-0.014, 0, 0), 0.055, foot, 0.28),
                 Ball(foot, (0, 0, 0), 0.035),
             ),
         ),
-        _joint("ankle", place("foot"), foot, 0.0375, (place("shank"), place("foot"))),
+        _joint("ankle", place["foot"], foot, 0.0375, (place["shank"], place["foot"])),
         Part(
             "foot",
-            place("foot"),
+            place["foot"],
             side,
             (
                 Ball(foot, (-0.046, -0.036, 0), 0.033),
@@ -208,7 +217,7 @@ def _side(side: Literal["left", "right"]) -> tuple[Part, ...]:
         ),
         Part(
             "toes",
-            place("foot"),
+            place["foot"],
             side,
             (
                 Ball(toes, (-0.010, 0.003, 0.032), 0.0195),
@@ -220,6 +229,10 @@ def _side(side: Literal["left", "right"]) -> tuple[Part, ...]:
             lead=-0.02,
         ),
     )
+
+
+def _places(side: Side) -> dict[str, Place]:
+    return {name: Place(f"{side}_{name}") for name in (*ARM, *LEG)}
 
 
 def _pair(segment: Segment, where: tuple[float, float, float], radius: float) -> tuple[Ball, Ball]:

@@ -39,10 +39,11 @@ class FigurePainter:
         self._edges.fill(seen.edges)
         self._rims.fill(grown(seen.edges, RIM * seen.hairline))
         shades = np.column_stack([seen.light_across, seen.light_towards, seen.across, seen.shade_middle]).tolist()
+        known = pose.measured.difference(pose.silent)
         for row in seen.order:
             part = self.body.parts[row]
             if part.needs:
-                if all(place in pose.measured and place not in pose.silent for place in part.needs):
+                if known.issuperset(part.needs):
                     self._paint_shaded(painter, shading, part, shades[row], row)
             elif part.place in pose.silent:
                 self._paint_hollow(painter, shading, row)

@@ -73,14 +73,14 @@ def outlines(body: Body, camera: Camera, world_from_segment: Array, joints: Arra
     # what is not drawn gets a harmless place: nothing is projected from behind the eye
     seen[~drawable] = (0.0, 0.0, 1.0)
     points = camera.on_picture(seen)
-    (balls, axis), (seen_balls, seen_ends) = (np.split(each, [-2], axis=1) for each in (points, seen))
+    balls, axis, seen_balls, seen_ends = points[:, :-2], points[:, -2:], seen[:, :-2], seen[:, -2:]
     radii = body.radii * (camera.focal / seen_balls[..., 2])
-    scale = camera.focal / seen_ends[..., 2].mean(axis=1)
+    scale = 2.0 * camera.focal / (seen_ends[:, 0, 2] + seen_ends[:, 1, 2])
     widths = body.end_widths * scale[:, None]
     across, towards, lit = _light(seen_ends, axis, radii.max(axis=1))
-    far = ((balls * lit[:, None]).sum(axis=-1) + radii).max(axis=1)
-    near = ((balls * lit[:, None]).sum(axis=-1) - radii).min(axis=1)
-    middle = axis.mean(axis=1)
+    towards_light = balls[..., 0] * lit[:, :1] + balls[..., 1] * lit[:, 1:]
+    far, near = (towards_light + radii).max(axis=1), (towards_light - radii).min(axis=1)
+    middle = 0.5 * (axis[:, 0] + axis[:, 1])
     offset = 0.5 * (far + near) - (middle * lit).sum(axis=-1)
     return Outlines(
         edges=_hulls(balls, radii),
@@ -159,9 +159,9 @@ def _painting_order(
     # 1/depth is what runs evenly on the picture
     inverse = 1.0 / depths
     depth = 1.0 / (inverse[:, :1] * (1 - share) + inverse[:, 1:] * share) - leads[:, None]
-    apart = stations[first][:, :, None] - stations[second][:, None]
+    x, y = (stations[first, :, None, way] - stations[second, None, :, way] for way in (0, 1))
     limit = width[first][:, :, None] + width[second][:, None]
-    overlap = np.maximum(1.0 - (apart * apart).sum(axis=-1) / (limit * limit), 0.0)
+    overlap = np.maximum(1.0 - (x * x + y * y) / (limit * limit), 0.0)
     behind = ((depth[first][:, :, None] - depth[second][:, None]) * overlap).sum(axis=(1, 2))
     behind /= np.maximum(overlap.sum(axis=(1, 2)), 1e-9)
     earlier = [0] * len(axis)
