@@ -86,6 +86,8 @@ def align(
     # Who was silent during the hold has no heading.
     limbs = {place: LimbAlignment(NO_MOUNTING, 0.0, "unknown", math.pi, 0.0) for place in worn}
     for place, hold in first.items():
+        if not worn[place].levelled:
+            continue
         elsewhere = {label: holds[place] for label, holds in others.items() if place in holds}
         limbs[place] = _align_limb(place, hold, reference.label, elsewhere, facing.get(place), mounting)
     return Alignment(pose, reference.time, reference.end, limbs)

@@ -23,8 +23,9 @@ from studio.core.live_solver import Solver, samples_of
 from studio.core.pose import Method, Motion
 from studio.core.root import Root, put_under_hold
 from studio.core.sample import SensorId
+from studio.core.strapping import level_by_straps
 from studio.core.take import Alignment, Calibration, CarriedAlignment, Mark, Take
-from studio.core.track import SensorTrack, attitude_at, tracks_of
+from studio.core.track import SensorTrack, attitude_at, flags_of, in_force, tracks_of
 
 CHUNK = 4096  # poses at a time: the working set stays in the cache
 ASSUMED_POSE = 1.0  # s at the start of a take without any marked pose
@@ -107,7 +108,11 @@ def solve(take: Take, options: SolveOptions | None = None) -> Solution:
 
 def solve_tracks(take: Take, options: SolveOptions) -> dict[SensorId, SensorTrack]:
     """Return the attitude of every sensor, without any body."""
-    return tracks_of(take, options.attitude, _calibrations(take, options))
+    tracks = tracks_of(take, options.attitude, _calibrations(take, options))
+    if take.setup.mounting == "strapped":
+        worn = level_by_straps(_worn(take, tracks), _poses(take, options), take.duration())
+        tracks |= {take.setup.assignment.sensors[place]: track for place, track in worn.items()}
+    return tracks
 
 
 def find_alignment(take: Take, tracks: Mapping[SensorId, SensorTrack], options: SolveOptions) -> Aligned:
@@ -225,7 +230,25 @@ def _notes(take: Take, tracks: Mapping[SensorId, SensorTrack], options: SolveOpt
     other = sorted({t.estimator for t in tracks.values() if t.estimator != options.attitude})
     if other:
         notes.append(f"Some sensors cannot serve the attitude filter {options.attitude}; they use {', '.join(other)}.")
+    doubled = _not_corrected(take, options)
+    if doubled:
+        notes.append(
+            "These tags correct by themselves and did not tell how, so that no other calibration was applied: "
+            f"{_listed(doubled)}."
+        )
     return tuple(notes)
+
+
+def _not_corrected(take: Take, options: SolveOptions) -> list[str]:
+    """Return the places, or the names, of tags whose calibration is not in force because it would be a second one."""
+    calibrations = _calibrations(take, options)
+    names = []
+    for stream in take.streams:
+        calibration = calibrations.get(stream.info.sensor)
+        if calibration is not None and in_force(stream.info, flags_of(stream), calibration) is None:
+            place = take.setup.assignment.place_of(stream.info.sensor)
+            names.append(stream.info.sensor if place is None else place.value)
+    return names
 
 
 def _solve_live(take: Take, options: SolveOptions) -> Solution:

@@ -5,13 +5,19 @@ for people, is ``resources/places.json``.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from studio.core import rotation
-from studio.core.body import PLACES, Place
+from studio.core.attitude.gyro_only import levelling
+from studio.core.body import PLACES, REFERENCE_POSES, SEGMENT_OF, Place, reference_pose
+from studio.core.frames import UP
+from studio.core.hold import hold_all
+from studio.core.take import Mark
+from studio.core.track import SensorTrack
 
 STRAP_SIGMA = math.radians(15)  # rad, about any axis; what a strap put on by eye is worth (contracts §3c)
 
@@ -59,3 +65,27 @@ def strap_rule() -> dict[Place, rotation.Array]:
         # Rows are the sensor's axes in segment axes; the sensor is right-handed, so y = z × x.
         rule[place] = rotation.from_matrix(np.stack([arrow, np.cross(face, arrow), face]))
     return rule
+
+
+def level_by_straps(
+    worn: Mapping[Place, SensorTrack], poses: Sequence[Mark], take_s: float
+) -> dict[Place, SensorTrack]:
+    """Return the tracks with world z upwards, where only the strap rule and a held pose tell what is up.
+
+    A sensor that sends neither acceleration nor an orientation of its own knows how it turned and nothing more.
+    What of it lies in no hold stays as it is, and so do all sensors that feel gravity.
+    """
+    levelled = dict(worn)
+    for mark in poses:
+        if mark.label not in REFERENCE_POSES:
+            continue
+        for place, hold in hold_all(worn, mark, take_s, required=False).items():
+            if worn[place].levelled or not hold.is_still():
+                continue
+            up_in_segment = rotation.rotate(rotation.inverse(reference_pose(mark.label)[SEGMENT_OF[place]]), UP)
+            believed_up = rotation.rotate(hold.attitude, rotation.rotate(strap_rule()[place], up_in_segment))
+            track = levelled[place]
+            turned = rotation.multiply(levelling(believed_up), worn[place].attitude)
+            in_group = (track.group == hold.group)[:, None]
+            levelled[place] = replace(track, attitude=np.where(in_group, turned, track.attitude), levelled=True)
+    return levelled

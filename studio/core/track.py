@@ -155,9 +155,15 @@ def _track(stream: Stream, wanted: str, calibration: Calibration | None) -> Sens
     name = estimator_for(info, wanted)
     attitudes = []
     for chain in chains:
-        chain.increments[1:] -= offset * info.frame_s
+        chain.increments[1:] -= offset * _step_lengths(chain, info.frame_s)[:, None]
         attitudes.append(open_estimator(name, info.frame_s, sigma).run(chain))
     return _joined(info, name, chains, attitudes, offset, sigma)
+
+
+def _step_lengths(chain: Run, frame_s: float) -> NDArray[np.float64]:
+    """Return the time from each frame to the next, (n - 1,), s: longer in a silence, which has few steps."""
+    is_silent = chain.silent[1:] | chain.silent[:-1]
+    return np.where(is_silent, np.diff(chain.time), frame_s)
 
 
 def measure_offset(runs: list[Run], frame_s: float, prior: float) -> tuple[NDArray[np.float64], float]:
