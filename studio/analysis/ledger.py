@@ -97,8 +97,9 @@ def _skew(stream: Stream, span: float) -> float:
     blocks = np.array_split(np.arange(len(offset)), min(50, len(offset) // 10 or 1))
     delay = received - received[0] - offset
     lowest = np.array([block[np.argmin(delay[block])] for block in blocks])
-    slope = float(np.polyfit(offset[lowest], delay[lowest], 1)[0])
-    return slope * 1e6
+    at, late = offset[lowest] - offset[lowest].mean(), delay[lowest] - delay[lowest].mean()
+    spread = float(at @ at)
+    return float(at @ late) / spread * 1e6 if spread > 0 else math.nan
 
 
 def _calibration(take: Take, stream: Stream) -> str:

@@ -24,6 +24,7 @@ STEP_BACK: Final = 10.0  # s; a clock that is fitted anew moves by tenths of a s
 MOST_FRAMES: Final = 4_320_000  # 12 h at 100 Hz; solved, 3.5 GB
 FRAMES_PER_SAMPLE: Final = 10  # beyond that: nine of ten samples lost
 LARGEST_COUNT: Final = 1 << 52  # of frames; exact as float64
+MOST_RESTARTS: Final = 1 << 30
 STATURES: Final = (0.3, 2.8)  # m; as in resources/map.schema.json
 GAINS: Final = (0.1, 10.0)  # singular values of a gain matrix; those of gyroscopes are within 3 % of 1
 LARGEST_RATE: Final = 1000.0  # rad/s; 57,000 °/s, ten times any gyroscope
@@ -100,7 +101,9 @@ def believe(rows: Rows, zero: float) -> tuple[Rows, int]:
     """
     with np.errstate(invalid="ignore", over="ignore"):
         time = rows["time"] - zero
-        placed = (np.abs(time) <= LONGEST_TAKE) & (np.abs(rows["frame"]) <= LARGEST_COUNT)
+        placed = np.abs(time) <= LONGEST_TAKE
+        placed &= (rows["frame"] >= -LARGEST_COUNT) & (rows["frame"] <= LARGEST_COUNT)
+        placed &= (rows["epoch"] >= 0) & (rows["epoch"] <= MOST_RESTARTS)
         placed &= time >= np.maximum.accumulate(np.where(placed, time, -LONGEST_TAKE)) - STEP_BACK
         length = np.sqrt((rows["orientation"] ** 2).sum(axis=1))
         wrong = (length < 0.5) | (length > 2.0)

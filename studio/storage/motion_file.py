@@ -1,7 +1,8 @@
 """A solved motion in ``derived/``: a cache that may be deleted at any time, never the truth.
 
 One line of JSON (what the arrays are), then the arrays as little-endian float64 or bytes, then a CRC-32.
-The file's name is the digest of everything the motion depends on; a file that does not hold is ignored.
+The file's name is the digest of everything the motion depends on, and stands in it; a file that does not hold is
+kept aside and the motion computed again.
 """
 
 import hashlib
@@ -15,19 +16,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 import studio
-from studio.core.body import PLACES, Skeleton
+from studio.core.body import PLACES, Place, Skeleton
 from studio.core.pose import Motion
 from studio.core.take import Alignment, Take
-from studio.storage.facts import to_json
+from studio.storage.documents import set_aside
+from studio.storage.facts import NOT_JSON, to_json
 from studio.storage.filesystem import write_atomically
+from studio.storage.limits import LONGEST_FRAME, LONGEST_TAKE, SHORTEST_FRAME, STATURES
 from studio.storage.take_reader import take_file
 
 _CRC = struct.Struct("<I")
 LONGEST_HEAD = 1 << 20  # bytes
+NUMBERS_PER_ROW = 1 + 23 * 4 + 3
+ROUNDING = 1e-6  # of the length of a unit quaternion; products of some thousand are within 1e-12
+FARTHEST = 1e6  # m from the start; a week of walking
 READ_AT_ONCE = 1 << 20  # bytes
 
 
 class _Head(msgspec.Struct, frozen=True):
+    key: str
     rows: int
     frame_s: float
     stature: float
@@ -53,6 +60,7 @@ def save_motion(folder: Path, key: str, motion: Motion) -> None:
     """Keep a motion beside its take; OSError when that is not possible."""
     places = [place for place in PLACES if place in motion.measured]
     head = _Head(
+        key=key,
         rows=len(motion),
         frame_s=motion.frame_s,
         stature=motion.skeleton.stature,
@@ -72,19 +80,51 @@ def save_motion(folder: Path, key: str, motion: Motion) -> None:
 
 
 def load_motion(folder: Path, key: str) -> Motion | None:
-    """Return the kept motion; None when there is none or it does not hold."""
+    """Return the kept motion; None when there is none or it does not hold, which is then kept aside as ``….bad``."""
+    file = folder / "derived" / f"{key}.motion"
     try:
-        content = (folder / "derived" / f"{key}.motion").read_bytes()
+        content = file.read_bytes()
     except OSError:
         return None
+    motion = _believed(content, key)
+    if motion is None:
+        set_aside(file)
+    return motion
+
+
+def _believed(content: bytes, key: str) -> Motion | None:
+    """Return the motion in a file; None when it is damaged, another's, or says what no solver says."""
     body = content[: -_CRC.size]
     if len(content) <= _CRC.size or _CRC.unpack(content[-_CRC.size :])[0] != zlib.crc32(body):
         return None
     end = body.find(b"\n", 0, LONGEST_HEAD)
     try:
-        return _motion(msgspec.json.decode(body[: max(end, 0)], type=_Head), body[end + 1 :])
-    except (msgspec.DecodeError, ValueError):  # written by another version
+        head = msgspec.json.decode(body[: max(end, 0)], type=_Head)
+        if head.key != key or not _is_plausible(head, len(body) - end - 1):
+            return None
+        motion = _motion(head, body[end + 1 :])
+    except (*NOT_JSON, ValueError):  # written by another version
         return None
+    with np.errstate(over="ignore", invalid="ignore"):
+        lengths = np.linalg.norm(motion.world_from_segment, axis=-1)
+        holds = (
+            (np.abs(lengths - 1.0) < ROUNDING).all()
+            and (np.abs(motion.hips) < FARTHEST).all()
+            and (np.abs(motion.time) <= LONGEST_TAKE).all()
+            and (np.diff(motion.time) >= 0).all()
+        )
+    return motion if holds else None
+
+
+def _is_plausible(head: _Head, size: int) -> bool:
+    promised = head.rows * (8 * NUMBERS_PER_ROW + 2 * len(head.places))
+    return (
+        head.rows > 0
+        and promised == size
+        and head.places == [place.value for place in PLACES if place.value in head.places]
+        and SHORTEST_FRAME <= head.frame_s <= LONGEST_FRAME
+        and STATURES[0] <= head.stature <= STATURES[1]
+    )
 
 
 def _motion(head: _Head, data: bytes) -> Motion:
@@ -94,7 +134,7 @@ def _motion(head: _Head, data: bytes) -> Motion:
     time, world, hips = np.split(numbers, np.cumsum(sizes)[:-1])
     masks: NDArray[np.bool_] = np.frombuffer(data, np.uint8, offset=8 * sum(sizes)).astype(bool)
     by_place = masks.reshape(len(head.places), 2, n)
-    places = [place for place in PLACES if place.value in head.places]
+    places = [Place(name) for name in head.places]
     return Motion(
         time=time,
         frame_s=head.frame_s,

@@ -43,7 +43,7 @@ def write_take(
     encoder = TakeEncoder(identity(take.name, take.person, take.source, take.setup, take.versions, anchor), zero=0.0)
     file = TakeFile(open_session(library, take.person, day or _day(take.started)), take.name, encoder, filesystem)
     marks = [mark_event(mark) for mark in take.marks]
-    for block in encoder.row_blocks(_rows(take.streams, encoder), events=marks):
+    for block in encoder.row_blocks(take_rows(take.streams, encoder), events=marks):
         file.append(block)
     for name, media_type, data in attachments:
         for block in encoder.attachment(name, media_type, data):
@@ -62,7 +62,8 @@ def _day(started: str) -> date:
         return now.date()
 
 
-def _rows(streams: tuple[Stream, ...], encoder: TakeEncoder) -> NDArray[np.void]:
+def take_rows(streams: tuple[Stream, ...], encoder: TakeEncoder) -> NDArray[np.void]:
+    """Return the samples of all streams in the order of arrival, as they stand in a take file."""
     tables = []
     for stream in streams:
         rows = np.zeros(len(stream), SAMPLE_DTYPE)

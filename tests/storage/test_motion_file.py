@@ -1,5 +1,8 @@
 """A solved motion beside its take: a cache, never the truth."""
 
+import json
+import struct
+import zlib
 from dataclasses import replace
 
 import numpy as np
@@ -7,7 +10,7 @@ import pytest
 
 from studio.core.body import PRESETS
 from studio.core.solver import SolveOptions, solve
-from studio.storage.motion_file import load_motion, motion_key, save_motion
+from studio.storage.motion_file import NUMBERS_PER_ROW, load_motion, motion_key, save_motion
 from studio.storage.take_store import write_take
 from tests.core.worn_sensors import worn_take
 
@@ -62,6 +65,74 @@ def test_a_damaged_file_is_no_motion(stored):
     for length in (0, 3, 100, len(whole) - 5):
         file.write_bytes(whole[:length])
         assert load_motion(folder, key) is None
+
+
+def forge(folder, key, change):
+    """Rewrite a kept motion with a right checksum after ``change(head, numbers)``."""
+    file = folder / "derived" / f"{key}.motion"
+    body = file.read_bytes()[:-4]
+    end = body.index(b"\n")
+    head = json.loads(body[:end])
+    numbers = np.frombuffer(body[end + 1 :], "<f8", head["rows"] * NUMBERS_PER_ROW).copy()
+    rest = body[end + 1 + numbers.nbytes :]
+    change(head, numbers)
+    forged = json.dumps(head).encode() + b"\n" + numbers.tobytes() + rest
+    file.write_bytes(forged + struct.pack("<I", zlib.crc32(forged)))
+    return file
+
+
+def put(at, value):
+    return lambda head, numbers: numbers.__setitem__(at, value)
+
+
+def say(**claims):
+    return lambda head, numbers: head.update(claims)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        say(key="0" * 32),  # of another take, under this one's name
+        say(frame_s=0.0),
+        say(frame_s=1e9),
+        say(stature=-1.0),
+        say(rows=0),
+        say(rows=-5),
+        say(rows=10**9),
+        say(places=[]),
+        say(places=["tail"] * 7),
+        lambda head, numbers: head["places"].reverse(),
+        put(3, np.nan),  # time
+        put(3, -1e12),
+        put(5, 0.0),  # time goes backwards
+        put(-1, np.inf),  # hips
+        put(-1, 1e300),
+        put(2000, np.nan),  # a segment
+        put(2000, 3.0),
+    ],
+)
+def test_a_forged_motion_is_no_motion_and_is_kept_aside(stored, change):
+    """A take of a stranger may come with results that nobody solved: right in its checksum, and not believed."""
+    folder, take = stored
+    key = motion_key(folder, take, SolveOptions())
+    save_motion(folder, key, solve(take).motion)
+    assert load_motion(folder, key) is not None
+    file = forge(folder, key, change)
+
+    assert load_motion(folder, key) is None
+    assert not file.exists()
+    assert file.with_name(file.name + ".bad").exists()
+
+
+@pytest.mark.parametrize("method", ["live", "offline"])
+def test_a_motion_of_either_method_is_believed(stored, method):
+    folder, take = stored
+    options = SolveOptions(method=method)
+    key = motion_key(folder, take, options)
+
+    save_motion(folder, key, solve(take, options).motion)
+
+    assert load_motion(folder, key) is not None
 
 
 def test_there_is_none_before_one_was_kept(stored):

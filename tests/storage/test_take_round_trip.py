@@ -3,8 +3,10 @@
 import stat
 import struct
 import sys
+import tracemalloc
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -252,6 +254,36 @@ def test_a_sample_without_a_time_is_left_out_and_clocks_that_tell_nothing_are_th
     assert stream.time.tolist() == pytest.approx([0.0, 1 / RATE])  # 0 is the first time there is
     assert stream.received[0] == 0.0
     assert stream.device_time[0] == strange.time
+
+
+def test_reading_needs_little_more_memory_than_the_take(tmp_path: Path) -> None:
+    """A take of half an hour has 205 MB; computers of clinics have 4 GB for everything."""
+    n = 20_000
+    stream = read_take(record(tmp_path, samples(1, 1)))[0].streams[0]
+    repeated: dict[str, Any] = {name: np.repeat(getattr(stream, name), n, axis=0) for name in FIELDS}
+    long = replace(stream, **repeated, arrival=np.arange(n))
+    streams = tuple(
+        replace(long, info=info(tag), arrival=long.arrival * len(TAGS) + number) for number, tag in enumerate(TAGS)
+    )
+    folder = write_take(Take("long", "", "", "", streams), tmp_path, DAY)
+
+    tracemalloc.start()
+    take, report = read_take(folder)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+
+    size = sum(getattr(stream, name).nbytes for stream in take.streams for name in (*FIELDS, "arrival"))
+    assert (report.samples, report.damaged) == (n * len(TAGS), 0)
+    assert peak < 2 * size
+
+
+def test_the_duration_is_that_of_the_last_sample_measured_not_of_the_last_to_arrive(tmp_path: Path) -> None:
+    late = samples(3, 1)
+    late[1], late[2] = late[2], late[1]
+
+    take, report = read_take(record(tmp_path, late))
+
+    assert take.duration() == report.until_s == pytest.approx(2 / RATE)
 
 
 def test_what_a_sensor_calls_itself_is_made_harmless(tmp_path: Path) -> None:

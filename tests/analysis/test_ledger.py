@@ -1,0 +1,36 @@
+"""The account of a sensor's samples."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from studio.analysis.ledger import ledger
+from studio.core.body import PRESETS
+from studio.core.take import Take
+from tests.core.worn_sensors import worn_take
+
+
+def taken(rows: slice, skew_ppm: float = 0.0) -> Take:
+    """Return a take of one sensor whose clock is quicker than the computer's, and whose arrivals are late by chance."""
+    whole, _ = worn_take(PRESETS["lower"], 30.0)
+    stream = whole.streams[0]
+    late = np.random.default_rng(0).exponential(1e-3, len(stream))
+    values = {name: getattr(stream, name)[rows] for name in stream.__dataclass_fields__ if name != "info"}
+    values["device_time"] = values["time"] * (1.0 + skew_ppm * 1e-6)
+    values["received"] = values["time"] + late[rows]
+    return replace(whole, streams=(replace(stream, **values),))
+
+
+def test_the_skew_of_a_clock_is_told_from_the_quickest_arrivals() -> None:
+    (account,) = ledger(taken(slice(None), skew_ppm=200.0))
+
+    assert account.clock_skew_ppm == pytest.approx(-200.0, abs=20.0)  # 1 ms of lateness in 30 s is 33 ppm
+
+
+@pytest.mark.parametrize("step", [400, 100])
+def test_too_few_samples_tell_nothing_of_a_clock(step: int) -> None:
+    (account,) = ledger(taken(slice(0, None, step)))
+
+    assert math.isnan(account.clock_skew_ppm)
