@@ -20,6 +20,7 @@ from studio.core.errors import AlignmentError, HeadingsUnknown, MovedDuringHold,
 from studio.core.facing import facing_from_hinges
 from studio.core.frames import UP
 from studio.core.hold import Hold, hold_all
+from studio.core.plausibility import refuse_wrong_poses
 from studio.core.sample import Quaternion, SensorId
 from studio.core.strapping import STRAP_SIGMA, strap_rule
 from studio.core.take import Alignment, Assignment, HeadingSource, LimbAlignment, Mark, Mounting, PoseName
@@ -29,6 +30,7 @@ SMALLEST_BOW = math.radians(20.0)  # of tilt between the holds
 BOW_AXIS_SIGMA = math.radians(1.5)  # joints are no perfect hinges: the bow itself is not purely sagittal
 TILT_SIGMA = math.radians(0.5)  # accelerometer of 5-10 mg
 COMMON_WORLD_SIGMA = math.radians(15.0)  # facing taken from the knees' and elbows' bending
+TILT_MISSED = math.radians(30.0)  # arms half as high, or thighs half as level, as they should be
 STRAP_CONTRADICTION = math.radians(45.0)  # gravity disagrees by more: the tag does not sit as the rule says
 
 # The way each segment turns about its right axis in the bow: trunk, head, shanks and (heels lifted) feet
@@ -69,7 +71,7 @@ def align(
 
     Raises
     ------
-    NoSensorWorn, PoseMissing, PoseTooShort, MovedDuringHold
+    NoSensorWorn, PoseMissing, PoseTooShort, MovedDuringHold, PoseNotHeld
         No reference can be used; this is what was wrong with the last. HeadingsUnknown is not raised here: a
         limb without heading is ``unknown`` (see ``require_headings``).
     """
@@ -82,6 +84,7 @@ def align(
         label: _usable_holds(worn, label, [mark for mark in poses if mark is not reference], take_s)
         for label in ("bow", *REFERENCE_POSES)
     }
+    refuse_wrong_poses(reference.label, _felt(worn, first), _felt(worn, others["bow"]), mounting)
     facing = _common_facing(worn, first, reference)
     # Who was silent during the hold has no heading.
     limbs = {place: LimbAlignment(NO_MOUNTING, 0.0, "unknown", math.pi, 0.0) for place in worn}
@@ -91,6 +94,11 @@ def align(
         elsewhere = {label: holds[place] for label, holds in others.items() if place in holds}
         limbs[place] = _align_limb(place, hold, reference.label, elsewhere, facing.get(place), mounting)
     return Alignment(pose, reference.time, reference.end, limbs)
+
+
+def _felt(worn: Mapping[Place, SensorTrack], holds: Mapping[Place, Hold]) -> dict[Place, Hold]:
+    """Return the holds of sensors that feel gravity."""
+    return {place: hold for place, hold in holds.items() if worn[place].info.has_acceleration}
 
 
 def require_headings(alignment: Alignment) -> None:
@@ -263,9 +271,14 @@ def from_two_poses(
     first_in_segment: NDArray[np.float64],
     other_in_segment: NDArray[np.float64],
 ) -> tuple[NDArray[np.float64] | None, float]:
-    """Return sensor_from_segment (4,) and sigma from "up" in two fully known poses; None when both look alike."""
+    """Return sensor_from_segment (4,) and sigma from "up" in two fully known poses.
+
+    None when both look alike on this limb, or when it did not tilt as far as between these poses.
+    """
     sine = float(np.linalg.norm(np.cross(first_in_segment, other_in_segment)))
-    if sine < math.sin(SMALLEST_BOW):
+    meant = math.atan2(sine, float(first_in_segment @ other_in_segment))
+    tilt = math.atan2(float(np.linalg.norm(np.cross(up_first, up_other))), float(up_first @ up_other))
+    if sine < math.sin(SMALLEST_BOW) or abs(tilt - meant) > TILT_MISSED:
         return None, math.pi
     sigma = math.hypot(TILT_SIGMA / sine, 2 * BOW_AXIS_SIGMA)
     return _from_pairs((up_first, up_other), (first_in_segment, other_in_segment)), sigma

@@ -8,6 +8,7 @@ The tree::
     ├── CalibrationError  CalibrationUnreadable
     ├── SetupError        PlaceTakenTwice · PersonCodeInvalid
     ├── AlignmentError    NoSensorWorn · PoseMissing · PoseTooShort · MovedDuringHold · HeadingsUnknown
+    │                     PoseNotHeld
     ├── TakeFileError     NotATake · Damaged · WrittenByNewerStudio · TakeUnsafe · TruthMissing
     ├── RecordingError    AlreadyRecording · StoppedEarly · DiskFull · FolderNotWritable · VerificationFailed
     ├── ImportFailed      RecordingUnreadable · MapFileInvalid · FormatUnknown
@@ -158,6 +159,17 @@ class HeadingsUnknown(AlignmentError):
     """Which way these limbs faced in the held pose is not known."""
 
     places: tuple[str, ...]
+
+
+@dataclass(eq=False)
+class PoseNotHeld(AlignmentError):
+    """Gravity says that another pose was held than the one named."""
+
+    pose: str
+    places: tuple[str, ...]
+    """the limbs that tell"""
+    held: str
+    """name of the pose that it looks like"""
 
 
 class TakeFileError(StudioError):

@@ -16,6 +16,7 @@ from studio.core import rotation
 from studio.core.alignment import heading_in
 from studio.core.body import REFERENCE_POSES, Place
 from studio.core.hold import Hold, hold_all
+from studio.core.plausibility import misheld
 from studio.core.take import Alignment, CarriedAlignment, Mark
 from studio.core.track import SensorTrack, attitude_at
 
@@ -60,7 +61,9 @@ def headings_of(
     for mark in poses:
         if mark.label in REFERENCE_POSES:
             everyone = hold_all(worn, mark, take_s, required=False)
-            holds.append(_held(mark.label, {p: everyone[p] for p in limbs if p in everyone}, alignment))
+            # Who stood otherwise than the pose says is not told a heading by it.
+            usable = set(limbs) & everyone.keys() - misheld(alignment, mark.label, everyone)
+            holds.append(_held(mark.label, {p: everyone[p] for p in limbs if p in usable}, alignment))
     while any(_learn(found, held) for held in holds):  # what one hold tells may be what another needs
         pass
     return found

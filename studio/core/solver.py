@@ -6,7 +6,7 @@ to one regular grid.
 """
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -18,8 +18,10 @@ from studio.core.body import REFERENCE_POSES, Place, Skeleton
 from studio.core.errors import AlignmentError, HeadingsUnknown, MovedDuringHold, NoSensorWorn, PoseMissing, PoseTooShort
 from studio.core.full_body import FullBody
 from studio.core.headings import GroupHeadings, headings_of
+from studio.core.hold import hold_all
 from studio.core.live_frames import FrameLog
 from studio.core.live_solver import Solver, samples_of
+from studio.core.plausibility import doubts, misheld
 from studio.core.pose import Method, Motion
 from studio.core.root import Root, put_under_hold
 from studio.core.sample import SensorId
@@ -103,7 +105,7 @@ def solve(take: Take, options: SolveOptions | None = None) -> Solution:
         attitude=chosen.attitude,
         notes=(*aligned.notes, *_notes(take, tracks, chosen)),
     )
-    return Solution(motion, tracks)
+    return Solution(replace(motion, notes=(*motion.notes, *doubts(motion))), tracks)
 
 
 def solve_tracks(take: Take, options: SolveOptions) -> dict[SensorId, SensorTrack]:
@@ -150,7 +152,24 @@ def _held(take: Take, tracks: Mapping[SensorId, SensorTrack], poses: tuple[Mark,
     headings = headings_of(_worn(take, tracks), alignment, poses, duration)
     refused = refused_holds(tracks, setup.assignment, poses, alignment, duration)
     notes = [f"Moved in the hold {hold.pose}, so that it tells nothing: {_listed(hold.places)}." for hold in refused]
+    notes += _stood_otherwise(take, tracks, alignment, poses)
     return Aligned(alignment, headings, (*notes, *_unknown(alignment, headings)))
+
+
+def _stood_otherwise(
+    take: Take, tracks: Mapping[SensorId, SensorTrack], alignment: Alignment, poses: tuple[Mark, ...]
+) -> list[str]:
+    notes = []
+    for mark in poses:
+        if mark.label in REFERENCE_POSES:
+            holds = hold_all(_worn(take, tracks), mark, take.duration(), required=False)
+            limbs = misheld(alignment, mark.label, holds)
+            if limbs:
+                names = _listed(place.value for place in alignment.limbs if place in limbs)
+                notes.append(
+                    f"Not held like the pose {mark.label} at {mark.time:.1f} s, so that it tells nothing: {names}."
+                )
+    return notes
 
 
 def _carried(
@@ -166,7 +185,8 @@ def _carried(
     note = f"The body was calibrated {since:.0f} s before the take began; no pose was held in it."
     if any(mark.label in REFERENCE_POSES for mark in poses):
         note = f"The body was calibrated {since:.0f} s before the take began; the poses held in it could not be used."
-    return Aligned(carried.alignment, headings, (note, *_unknown(carried.alignment, headings)))
+    otherwise = _stood_otherwise(take, tracks, carried.alignment, poses)
+    return Aligned(carried.alignment, headings, (note, *otherwise, *_unknown(carried.alignment, headings)))
 
 
 def _worn(take: Take, tracks: Mapping[SensorId, SensorTrack]) -> dict[Place, SensorTrack]:
@@ -263,4 +283,4 @@ def _solve_live(take: Take, options: SolveOptions) -> Solution:
     aligned = find_alignment(take, tracks, options)
     solver.use(aligned.alignment, aligned.headings)
     motion = solver.motion(history, (*aligned.notes, *_notes(take, tracks, options)))
-    return Solution(motion, tracks)
+    return Solution(replace(motion, notes=(*motion.notes, *doubts(motion))), tracks)

@@ -71,7 +71,7 @@ def _in_words(name: str, fact: Any) -> str:
     text = _readable(str(fact))
     if name in ("place", "places"):
         return text.replace("_", " ")
-    return POSES.get(text, text) if name == "pose" else text
+    return POSES.get(text, text) if name in ("pose", "held") else text
 
 
 def _number_in_words(name: str, value: float) -> str:
@@ -200,6 +200,12 @@ TEMPLATES = _by_id(
         "Without them it is not known which way these limbs faced in the held pose, and joint angles would be wrong.",
         "Record a bow after the pose, strap the tags on as the picture shows and say so, "
         "or use sensors that share one compass direction.",
+    ),
+    Message(
+        "cal.other_pose",
+        "What was recorded as {pose} looks like {held}.",
+        "Gravity says so on these limbs: {places}. All joint angles would be wrong.",
+        "Record the poses again as the pictures show them, or correct their names.",
     ),
     # Person and assignment
     Message(
@@ -347,6 +353,7 @@ MESSAGE_OF: dict[type[StudioError], str | Callable[[Any], str]] = {
     errors.PoseTooShort: "cal.pose_outside",
     errors.MovedDuringHold: "cal.moved",
     errors.HeadingsUnknown: "cal.heading",
+    errors.PoseNotHeld: "cal.other_pose",
     errors.PlaceTakenTwice: "set.place_twice",
     errors.PersonCodeInvalid: "set.person_code",
     errors.AlreadyRecording: "rec.running",

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from studio.capture.procedures.judged_hold import Judged, LimbResult, limb_results
 from studio.core.body import Place
-from studio.core.errors import AlignmentError, HeadingsUnknown, PoseTooShort
+from studio.core.errors import AlignmentError, HeadingsUnknown, PoseNotHeld, PoseTooShort
 from studio.core.take import Alignment, Mark, PoseName
 
 DELAYS = (3, 5, 10)  # s on offer: at hand, across the room, alone
@@ -185,8 +185,8 @@ class HeldPose:
         if alignment is not None:
             self.alignment = alignment
         self.outcome = Outcome(self.pose, limb_results(shown, error), error)
-        if isinstance(error, PoseTooShort) and error.pose != self.pose:
-            self.done = ()  # the reference lies too far back: it must be held again
+        if isinstance(error, PoseNotHeld | PoseTooShort) and error.pose != self.pose:
+            self.done = ()  # the reference lies too far back, or was none: it must be held again
         if self._is_enough(alignment, error):
             self.done = (*(pose for pose in self.done if pose != self.pose), self.pose)
             return self._end(Kind.DONE)
