@@ -31,7 +31,9 @@ class TruthReport:
     """Rotation errors of the joints between measured segments."""
 
     joint_rms_deg: Mapping[Place, float]
-    """By the child's place."""
+    """By the child's place; a joint that is never measured has none."""
+    measured_share: Mapping[Place, float]
+    """By the child's place, of all joints between worn segments: of the frames, how many are measured and so judged."""
     from_s: float
     to_s: float
     shift_s: float
@@ -87,12 +89,13 @@ def judge(motion: Motion, truth: Truth, zero: float) -> TruthReport:
         for shift in tried
     ]
     shift = float(tried[int(np.argmin(costs))])
-    rms = {}
+    rms, shares = {}, {}
     for joint in joints:
         errors = _errors(motion, truth, joint, motion.time + zero - shift, slice(None))
+        shares[joint[1]] = len(errors) / len(motion)
         if len(errors):
             rms[joint[1]] = float(np.degrees(np.sqrt(np.mean(errors**2))))
-    return TruthReport(rms, float(motion.time[0]), float(motion.time[-1]), shift)
+    return TruthReport(rms, shares, float(motion.time[0]), float(motion.time[-1]), shift)
 
 
 def _errors(

@@ -87,6 +87,7 @@ def truth_values(truth: TruthReport) -> dict[str, Any]:
     """Return the comparison with the true motion for JSON."""
     return {
         "joints": {place.value: round(value, 4) for place, value in truth.joint_rms_deg.items()},
+        "measured_share": {place.value: round(share, 4) for place, share in truth.measured_share.items()},
         "median_rms_deg": round(truth.median(), 4),
         "worst_rms_deg": round(truth.worst(), 4),
         "transport_delay_s": round(truth.shift_s, 4),
@@ -100,8 +101,15 @@ def truth_text(truth: TruthReport) -> list[str]:
     lines = [
         f"rotation error of each joint against the true motion, RMS from {truth.from_s:.1f} s to {truth.to_s:.1f} s"
     ]
-    lines += [f"  {place.value:<16} {value:6.2f}°" for place, value in truth.joint_rms_deg.items()]
-    return [*lines, f"  median {truth.median():.2f}°, worst {truth.worst():.2f}°"]
+    for place, share in truth.measured_share.items():
+        error = truth.joint_rms_deg.get(place)
+        lines.append(f"  {place.value:<16} {'–' if error is None else f'{error:.2f}°':>7}  {share:7.2%} measured")
+    judged = f"{len(truth.joint_rms_deg)} of {len(truth.measured_share)} joints"
+    return [
+        *lines,
+        f"  median {truth.median():.2f}°, worst {truth.worst():.2f}°, over {judged}",
+        f"  samples are taken to be {truth.shift_s * 1000:.0f} ms earlier than the studio believes",
+    ]
 
 
 def _condition(report: ReadReport) -> list[str]:

@@ -6,7 +6,7 @@ from studio.core.errors import ImportFailed, NothingToExport, ReadBackDiffers
 from studio.export.bvh import PRESETS, SEQUENCE, bvh_blocks
 from studio.export.bvh_check import compare_with_motion
 from studio.export.material import Material, Product, Wish
-from studio.export.resampling import timing_of, unfinished
+from studio.export.resampling import is_even, timing_of, unfinished
 from studio.export.sidecar import sidecar
 
 
@@ -34,7 +34,7 @@ def export_bvh(material: Material, wish: Wish) -> Product:
             "rotations": SEQUENCE,
             "frames": timing.frames,
             "frame_time_s": timing.frame_s,
-            "resampled_from_frame_time_s": None if wish.fps is None else motion.frame_s,
+            "resampled_from_frame_time_s": None if wish.fps is None and is_even(motion) else motion.frame_s,
             "first_frame_s": float(motion.time[0]),
             "rows_held_because_not_finite": unfinished(motion),
         }

@@ -13,6 +13,7 @@ from studio.core.pose import Motion
 Array = NDArray[np.float64]
 
 BLOCK = 1024  # frames; small enough for the processor's cache, large enough that numpy's calls do not count
+EVEN = 1e-6  # s; rounding of times, far below what clocks of sensors vary by
 TICK = 1e-6  # frames; rounding of a duration must not lose the last frame
 
 
@@ -38,10 +39,16 @@ class Poses:
 
 
 def timing_of(motion: Motion, fps: int | None) -> Timing:
-    """Return the grid at ``fps`` frames a second; None keeps the motion's own."""
-    if fps is None:
+    """Return the grid at ``fps`` frames a second; None keeps the motion's own rate, evened out where it varies."""
+    if fps is None and is_even(motion):
         return Timing(len(motion), motion.frame_s)
-    return Timing(math.floor((len(motion) - 1) * motion.frame_s * fps + TICK) + 1, 1 / fps)
+    frame_s = motion.frame_s if fps is None else 1 / fps
+    return Timing(math.floor((motion.time[-1] - motion.time[0]) / frame_s + TICK) + 1, frame_s)
+
+
+def is_even(motion: Motion) -> bool:
+    """Return whether the rows lie one frame apart: those of a live motion come when the sensors sent."""
+    return bool((np.abs(np.diff(motion.time) - motion.frame_s) <= EVEN).all())
 
 
 def blocks_of_poses(motion: Motion, fps: int | None) -> Iterator[Poses]:
@@ -50,11 +57,11 @@ def blocks_of_poses(motion: Motion, fps: int | None) -> Iterator[Poses]:
     A pose that is not finite is held from the frame before (the T-pose where there is none); how many
     there are, tells ``unfinished``.
     """
-    timing = timing_of(motion, fps)
+    timing, is_native = timing_of(motion, fps), fps is None and is_even(motion)
     rotations, hips = body.reference_pose("t"), np.array([0.0, 0.0, motion.skeleton.hips_height()])
     for first in range(0, timing.frames, BLOCK):
         rows = np.arange(first, min(first + BLOCK, timing.frames))
-        turned, moved = _between(motion, rows, fps)
+        turned, moved = _between(motion, rows, timing, is_native)
         turned, moved = _held(turned, rotations), _held(moved, hips)
         rotations, hips = turned[-1], moved[-1]
         yield Poses(first, turned, moved)
@@ -66,10 +73,10 @@ def unfinished(motion: Motion) -> int:
     return int((~(rotations & np.isfinite(motion.hips).all(axis=1))).sum())
 
 
-def _between(motion: Motion, rows: NDArray[np.int64], fps: int | None) -> tuple[Array, Array]:
-    if fps is None:
+def _between(motion: Motion, rows: NDArray[np.int64], timing: Timing, is_native: bool) -> tuple[Array, Array]:
+    if is_native:
         return motion.world_from_segment[rows], motion.hips[rows]
-    place = np.minimum(rows / (fps * motion.frame_s), len(motion) - 1)
+    place = np.interp(motion.time[0] + rows * timing.frame_s, motion.time, np.arange(len(motion)))
     before = np.floor(place + TICK).astype(np.int64)
     after = np.minimum(before + 1, len(motion) - 1)
     fraction = np.clip(place - before, 0.0, 1.0)
