@@ -9,6 +9,7 @@ from PySide6.QtCore import QObject
 from PySide6.QtWidgets import QApplication
 
 from studio.core.body import Place
+from studio.export.file_target import is_taken
 from studio.storage.take_summary import TakeSummary
 from studio.ui.display_tick import DisplayTick
 from studio.ui.live_show import LiveShow
@@ -139,7 +140,7 @@ class StudioWindow(QObject):
     def _build_pages(self, words: dict[Place, PlaceWords]) -> None:
         theme = self.theme
         self.assignment = AssignmentModel(self)
-        self.choice = ExportChoice(Path.exists, self)
+        self.choice = ExportChoice(is_taken, self)
         self.traces = Traces(theme)
         live = Stage(theme)
         self.home_page = HomePage(theme)

@@ -1,6 +1,7 @@
 """The command line: 0 done, 1 the operator can act, 2 usage; one sentence, never an exception."""
 
 import json
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -32,10 +33,15 @@ def refused(capsys, *words):
     return printed.err
 
 
-def test_without_a_verb_it_says_that_there_is_no_window_yet(capsys):
-    assert main([]) == 0
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="elsewhere there is always a screen")
+def test_without_a_verb_and_a_screen_it_says_so(capsys, monkeypatch):
+    for name in ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM"):
+        monkeypatch.delenv(name, raising=False)
+    assert main([]) == 1
 
-    assert "window" in capsys.readouterr().out
+    said = capsys.readouterr().err
+    assert "no screen" in said
+    assert "--help" in said
 
 
 @pytest.mark.parametrize(

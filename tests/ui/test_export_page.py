@@ -180,9 +180,9 @@ def test_done_says_that_it_was_checked_and_where_it_is(page, qtbot):
 
 def test_a_refusal_is_a_sentence_and_it_can_be_tried_again(page):
     page.show_progress("write", 0.2)
-    page.show_refusal(CannotWrite("/data/exports/walk.bvh"))
+    page.show_refusal(CannotWrite("/data/exports/walk.bvh", "permission denied"))
 
-    assert page.result.text().startswith("▲ /data/exports/walk.bvh cannot be written. It is open in another")
+    assert page.result.text().startswith("▲ /data/exports/walk.bvh cannot be written. The reason: permission denied.")
     assert page.start.isEnabled()
     assert not page.result.show_file.isVisible()
 

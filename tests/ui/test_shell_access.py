@@ -4,44 +4,21 @@ from dataclasses import replace
 
 import pytest
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import (
-    QAbstractButton,
-    QAbstractItemView,
-    QAbstractSlider,
-    QAbstractSpinBox,
-    QApplication,
-    QComboBox,
-    QLabel,
-    QLineEdit,
-    QPlainTextEdit,
-    QScrollBar,
-    QWidget,
-)
+from PySide6.QtWidgets import QAbstractButton, QApplication, QWidget
 
 from studio.ui.models.readiness import Problem, ReadinessState, StripPhase
 from studio.ui.theme import Theme
 from studio.ui.views.crash_dialog import CrashDialog
-from studio.ui.views.elided import ElidedLabel
 from studio.ui.views.notices import Action
+from tests.ui.access import controls, cut_texts
 from tests.ui.shell_window import shell
 
 # The plugin that paints into memory has no window manager to tell sizes to.
 pytestmark = pytest.mark.qt_log_ignore("propagateSizeHints")
 
-CONTROLS = (QAbstractButton, QAbstractItemView, QAbstractSlider, QAbstractSpinBox, QComboBox, QLineEdit, QPlainTextEdit)
 PAGES = ["home", "connect", "capture", "settings", "diagnostics"]
 STATE = ReadinessState(StripPhase.CHECK, 14, 15, None, 0.12, 500.0, 0.8, "take 004 walk", 0.0)
 PROBLEMS = (Problem("The body calibration is 47 min old. Angles may have drifted.", "Repeat the pose", "pose"),) * 3
-
-
-def controls(window: QWidget) -> list[QWidget]:
-    found = [child for child in window.findChildren(QWidget) if isinstance(child, CONTROLS) and child.isVisible()]
-    inner = (QScrollBar, QAbstractItemView) if any(isinstance(child, QComboBox) for child in found) else (QScrollBar,)
-    return [child for child in found if not isinstance(child, QScrollBar) and not _is_part(child, inner)]
-
-
-def _is_part(child: QWidget, inner: tuple[type, ...]) -> bool:
-    return isinstance(child, inner) and isinstance(child.window(), QComboBox)
 
 
 def busy(made) -> None:
@@ -106,12 +83,7 @@ def test_no_text_is_cut(qtbot, page, scale):
         made.window.toast.say("Take 004 saved and verified · 00:42 · loss 0.1 %", (Action("review", "Review"),))
         for _ in range(3):
             QApplication.processEvents()
-        cut = [
-            (type(w).__name__, w.text(), (w.width(), w.height()), (needed.width(), needed.height()))
-            for w in made.window.findChildren(QWidget)
-            if isinstance(w, (QLabel, QAbstractButton)) and w.isVisible() and not isinstance(w, ElidedLabel)
-            if w.text() and (needed := needs(w)) and (w.width() < needed.width() or w.height() < needed.height())
-        ]
+        cut = cut_texts(made.window)
 
         assert cut == []
         assert (made.window.width(), made.window.height()) == (1280, 800)
@@ -124,15 +96,6 @@ def test_in_a_low_window_large_words_stay_and_icons_go(qtbot):
         cut = [b.text() for b in made.window.rail.buttons.values() if b.height() < b.sizeHint().height()]
 
         assert cut == []
-
-
-def needs(widget):
-    """Return the size without which some of the text would be missing."""
-    if isinstance(widget, QLabel) and widget.wordWrap():
-        hint = widget.minimumSizeHint()
-        hint.setHeight(widget.heightForWidth(widget.width()))
-        return hint
-    return widget.sizeHint()
 
 
 @pytest.mark.parametrize("page", PAGES)

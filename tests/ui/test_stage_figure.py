@@ -341,6 +341,6 @@ def test_a_letter_does_not_lie_on_the_glove_of_the_other_side():
     below = on_right + np.array([0.0, 300.0])
 
     assert seen.order.index(right) > seen.order.index(left)
-    assert hidden_letters(BODY, seen, [left], on_right).tolist() == [True]
-    assert hidden_letters(BODY, seen, [left], below).tolist() == [False]
-    assert hidden_letters(BODY, seen, [right], on_left).tolist() == [False]
+    assert hidden_letters(BODY, seen, [left], on_right, 4.0).tolist() == [True]
+    assert hidden_letters(BODY, seen, [left], below, 4.0).tolist() == [False]
+    assert hidden_letters(BODY, seen, [right], on_left, 4.0).tolist() == [False]

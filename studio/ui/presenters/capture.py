@@ -80,6 +80,7 @@ class CapturePresenter(QObject):
         model.recording_failed.connect(self._on_failed)
         model.next_take_changed.connect(self._show_phase)
         self._angles.names_changed.connect(self._offer_angles)
+        self._offer_angles()
         self._show_phase()
 
     def press(self) -> None:
@@ -217,7 +218,7 @@ class CapturePresenter(QObject):
         self._settings.set("angles", names)
 
     def _offer_angles(self) -> None:
-        names = self._angles.names
+        names = self._angles.names or self._angles.chosen
         self._page.offer_angles(names, self._angles.chosen, {name: in_words(name) for name in names})
 
 

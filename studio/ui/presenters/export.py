@@ -90,7 +90,7 @@ class ExportPresenter(QObject):
             return
         item = self._left.pop(0)
         self._show_progress("read", 0.0)
-        request = ExportRequest(SolveRequest(item.take), order.exporter, order.wish, item.target)
+        request = ExportRequest(SolveRequest(item.take), order.exporter, order.wish, item.target, item.replace)
         operation = Operation(self)
         operation.progressed.connect(self._show_progress)
         operation.done.connect(self._on_written)

@@ -28,6 +28,10 @@ class Stages(QObject):
         for name in LIVE:
             stages[name].set_empty_text(self.tr("No body yet: connect sensors and calibrate."))
 
+    def stage(self, page: str) -> Stage:
+        """Return the figure of a page."""
+        return self._stages[page]
+
     def show_page(self, page: str) -> None:
         """Another page is looked at."""
         self._page = page

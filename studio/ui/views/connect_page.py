@@ -60,6 +60,7 @@ class ConnectPage(QWidget):
         self._is_connected = False
         self._now = 0.0
         self._moved_at = -math.inf
+        self._had_sensors = False
         self.sensors = SensorTableModel(self)
         self.choice = SourceChoice(theme, self)
         self.list = SensorList(theme, self.sensors, self)
@@ -338,6 +339,9 @@ class ConnectPage(QWidget):
         for part in (self._empty_icon, self._empty_title, self._empty_text, self.instead):
             part.setVisible(not refused)
         self.instead.setVisible(not refused and not self.choice.is_open)
+        if has_sensors and not self._had_sensors:
+            self._need_room()
+        self._had_sensors = has_sensors
 
     def _say_count(self) -> None:
         if not self._is_connected:

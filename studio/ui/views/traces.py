@@ -6,7 +6,6 @@ from PySide6.QtCore import Signal as QtSignal
 from PySide6.QtWidgets import (
     QButtonGroup,
     QGridLayout,
-    QHBoxLayout,
     QPushButton,
     QScrollArea,
     QStackedWidget,
@@ -18,6 +17,7 @@ from studio.capture.live_buffer import Window
 from studio.core.sample import SensorId
 from studio.ui.models.signal_values import Signal
 from studio.ui.theme import GAP, GRID, Theme
+from studio.ui.views.flow import FlowLayout
 from studio.ui.views.plots.angle_plot import AngleCurve, AnglePlot
 from studio.ui.views.plots.signal_plot import SignalPlot
 
@@ -86,8 +86,8 @@ class Traces(QWidget):
 
     def _build(self) -> None:
         words = (self.tr("Angles"), self.tr("Turning"), self.tr("Acceleration"), self.tr("Orientation"))
-        row = QHBoxLayout()
-        row.setSpacing(GRID)
+        choices = QWidget(self)
+        row = FlowLayout(choices, gap=GRID, line_gap=GRID)
         for number, said in enumerate(words):
             button = QPushButton(said, self)
             button.setCheckable(True)
@@ -95,7 +95,6 @@ class Traces(QWidget):
             button.setAccessibleName(self.tr("Traces: {what}").format(what=said))
             self.kinds.addButton(button, number)
             row.addWidget(button)
-        row.addStretch(1)
         self.kinds.button(0).setChecked(True)
         self.kinds.idClicked.connect(self._choose)
         self._grid.setContentsMargins(0, 0, 0, 0)
@@ -108,7 +107,7 @@ class Traces(QWidget):
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(GAP)
-        column.addLayout(row)
+        column.addWidget(choices)
         column.addWidget(self._stack, 1)
 
     def _choose(self, number: int) -> None:

@@ -104,6 +104,11 @@ def grown(edges: Array, by: float) -> Array:
     return np.asarray(edges + by * _DIRECTIONS)
 
 
+def distances(edges: Array, points: Array) -> Array:
+    """Return how far ``points`` (n, 2), px, are outside each outline, (n, parts); inside it is negative."""
+    return np.asarray(((points[:, None, None] - edges) * _DIRECTIONS).sum(axis=-1).max(axis=-1))
+
+
 def _hulls(balls: Array, radii: Array) -> Array:
     """Return the edge of the hull of each row of circles: in each direction that of the outermost circle."""
     reach = balls @ _DIRECTIONS.T + radii[..., None]

@@ -10,7 +10,7 @@ from PySide6.QtGui import QColor, QPainter, QPixmap
 
 from studio.ui.theme import Theme
 from studio.ui.views.stage.body_parts import Body
-from studio.ui.views.stage.outlines import EDGE, Outlines
+from studio.ui.views.stage.outlines import EDGE, Outlines, distances
 
 Array = NDArray[np.float64]
 
@@ -46,7 +46,7 @@ class SideLetters:
         if not lettered:
             return
         places = _beyond(seen, lettered, 0.75 * size)
-        hidden = hidden_letters(body, seen, lettered, places).tolist()
+        hidden = hidden_letters(body, seen, lettered, places, size / 4).tolist()
         for row, is_hidden, (x, y) in zip(lettered, hidden, (places - size / 2).tolist(), strict=True):
             if not is_hidden:
                 badge = self._badge(body.parts[row].tone == "left", size, letters, ratio)
@@ -89,10 +89,11 @@ def _beyond(seen: Outlines, rows: Sequence[int], distance: float) -> Array:
     return np.asarray(middle + along * (reach + distance)[:, None])
 
 
-def hidden_letters(body: Body, seen: Outlines, rows: Sequence[int], places: Array) -> NDArray[np.bool_]:
+def hidden_letters(body: Body, seen: Outlines, rows: Sequence[int], places: Array, reach: float) -> NDArray[np.bool_]:
     """Return for parts whether all four ends of each are behind nearer parts of other limbs, (rows,).
 
-    A letter whose place, (rows, 2), is on the other side's glove or shoe would name that one: it is hidden as well.
+    A letter whose place, (rows, 2), is on the other side's glove or shoe, or less than ``reach`` px beside it, would
+    name that one: it is hidden as well.
     """
     order = np.array(seen.order)
     turn = np.empty(len(body.parts), np.intp)
@@ -100,7 +101,7 @@ def hidden_letters(body: Body, seen: Outlines, rows: Sequence[int], places: Arra
     nearer = turn[rows][:, None] < np.arange(len(order))
     others = nearer & (body.limbs[rows][:, None] != body.limbs[order])
     opposite = nearer & (body.sides[rows][:, None] * body.sides[order] < 0)
-    points = np.concatenate([seen.edges[rows, :: EDGE // 4], places[:, None]], axis=1)[:, :, None]
+    points = seen.edges[rows, :: EDGE // 4][:, :, None]
     upper, along = seen.axis[order, 0], seen.axis[order, 1] - seen.axis[order, 0]
     from_upper = points - upper
     share = (from_upper * along).sum(axis=-1) / np.maximum((along * along).sum(axis=-1), 1e-9)
@@ -108,5 +109,7 @@ def hidden_letters(body: Body, seen: Outlines, rows: Sequence[int], places: Arra
     apart = from_upper - share[..., None] * along
     width = seen.widths[order, 0] * (1.0 - share) + seen.widths[order, 1] * share
     inside = (apart * apart).sum(axis=-1) < width * width
-    behind = (inside[:, :-1] & others[:, None]).any(axis=2).all(axis=1)
-    return np.asarray(behind | (inside[:, -1] & opposite).any(axis=1))
+    behind = (inside & others[:, None]).any(axis=2).all(axis=1)
+    gloves = opposite.any(axis=0)
+    lying = distances(seen.edges[order[gloves]], places) < reach
+    return np.asarray(behind | (lying & opposite[:, gloves]).any(axis=1))
