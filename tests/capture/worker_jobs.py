@@ -1,6 +1,7 @@
 """Jobs for the tests of the worker process: found there by name."""
 
 import os
+import threading
 
 from studio.core.errors import NothingToExport
 
@@ -17,3 +18,21 @@ def refuse(request, progress):
 
 def die(request, progress):
     os._exit(3)
+
+
+def stumble(request, progress):
+    return [][request]
+
+
+def answer_with(request, progress):
+    progress("write", 0.5)
+    return request
+
+
+def answer_with_what_cannot_be_sent(request, progress):
+    return threading.Lock()
+
+
+def run_for_ever(request, progress):
+    progress("solve", 0.5)
+    threading.Event().wait()
