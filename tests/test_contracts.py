@@ -17,6 +17,8 @@ WAITING = "storage, importers, analysis and export wait for nobody"
 PORTS = "ports are in acquisition alone"
 NETWORK = "the studio neither listens nor calls"
 TRUTH = "the truth of the synthetic suit is for judging only"
+PAGES = "a page knows no other page"
+VIEWS = "views ask for nothing by themselves"
 JUDGE = "the judge is called by the command line only"
 
 # (the contract, the file that breaks it, the line it adds)
@@ -42,6 +44,9 @@ MUTATIONS = [
     (TRUTH, "acquisition/driver.py", "from studio.acquisition.synthetic import truth"),
     (TRUTH, "capture/__init__.py", "from studio.acquisition.synthetic import truth"),
     (JUDGE, "capture/__init__.py", "from studio.capture import truth"),
+    (PAGES, "ui/models/playhead.py", "import studio.ui.views.rail"),
+    (PAGES, "ui/views/rail.py", "import studio.ui.presenters.home"),
+    (VIEWS, "ui/views/rail.py", "import studio.capture.live_session"),
 ]
 
 
