@@ -155,7 +155,7 @@ def test_unmeasured_limbs_are_hatched_and_silent_ones_hollow(qtbot):
 
 def test_a_hatched_limb_has_lines_and_a_hollow_one_the_ground(qtbot):
     widget = stage(qtbot, size=(1000, 700))
-    along = np.linspace(0.25, 0.75, 60)
+    along = np.linspace(0.35, 0.75, 60)  # below the pelvis
     brightness = {}
     for name, pose in {
         "solid": standing(),
@@ -344,3 +344,20 @@ def test_a_letter_does_not_lie_on_the_glove_of_the_other_side():
     assert hidden_letters(BODY, seen, [left], on_right, 4.0).tolist() == [True]
     assert hidden_letters(BODY, seen, [left], below, 4.0).tolist() == [False]
     assert hidden_letters(BODY, seen, [right], on_left, 4.0).tolist() == [False]
+
+
+@pytest.mark.parametrize("from_behind", [False, True])
+@pytest.mark.parametrize("view", ["front", "side", "free"])
+def test_while_walking_the_pelvis_covers_both_thighs_and_nothing_leaps_to_the_front(view, from_behind):
+    thighs = [("thigh", Place.LEFT_THIGH), ("thigh", Place.RIGHT_THIGH)]
+    for pose in walking(3.0, rate=20.0):
+        turns = order(pose, view, from_behind=from_behind)
+
+        assert all(turns["pelvis", Place.PELVIS] > turns[thigh] for thigh in thighs)
+
+
+def test_the_hand_at_the_near_side_covers_the_pelvis():
+    turns = order(standing(), "side")
+
+    assert turns["hand", Place.RIGHT_HAND] > turns["pelvis", Place.PELVIS]
+    assert turns["forearm", Place.RIGHT_FOREARM] > turns["pelvis", Place.PELVIS]

@@ -70,11 +70,12 @@ def _trunk() -> tuple[Part, ...]:
             Place.PELVIS,
             "limb",
             (
-                *_pair(s.Hips, (0.0, 0.085, 0.058), 0.076),
-                *_pair(s.Hips, (-0.014, -0.012, 0.070), 0.085),
+                *_pair(s.Hips, (0.0, 0.085, 0.060), 0.074),
+                *_pair(s.Hips, (-0.008, 0.012, 0.078), 0.080),
+                *_pair(s.Hips, (-0.006, -0.042, 0.022), 0.074),
             ),
             2,
-            lead=0.03,
+            lead=0.10,
         ),
         Part(
             "abdomen",
@@ -199,7 +200,8 @@ def _leg(side: Side) -> tuple[Part, ...]:
             place["shank"],
             (
                 Ball(lower, (0, 0, 0), 0.053),
-                Ball(lower, (-0.014, 0, 0), 0.055, foot, 0.28),
+                Ball(lower, (-0.010, 0, 0), 0.0555, foot, 0.17),
+                Ball(lower, (-0.011, 0, 0), 0.0535, foot, 0.34),
                 Ball(foot, (0, 0, 0), 0.035),
             ),
         ),

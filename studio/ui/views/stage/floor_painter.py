@@ -16,8 +16,8 @@ from studio.ui.views.stage.shading import Shading, mixed, placed
 
 Array = NDArray[np.float64]
 
-REACH = 1.55  # of the camera's distance; how far the grid goes
-FADES = ((0.0, 0), (0.39, 0), (0.55, 85), (0.8, 190), (1.0, 235))
+REACH = 1.2  # of the camera's distance; how far the grid goes
+FADES = ((0.0, 0), (0.45, 0), (0.6, 85), (0.8, 180), (1.0, 235))
 """Nearness (the target's depth by that of the line) and how much of 255 is seen."""
 FLAT = math.radians(80.0)  # rad; seen more steeply, the floor has no far end
 LOW = (Segment.LeftHand, Segment.RightHand, Segment.LeftLeg, Segment.RightLeg, Segment.Head)
