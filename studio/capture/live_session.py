@@ -8,6 +8,7 @@ import math
 import time
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
+from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
 from queue import SimpleQueue
@@ -27,7 +28,7 @@ from studio.core.body import Place
 from studio.core.errors import AlreadyRecording, LinkError, NoData, PortGone, StudioError, UnsupportedVersion
 from studio.core.live_solver import Solver
 from studio.core.sample import Sample, SensorId, SensorInfo
-from studio.core.take import Calibration, Mark, Setup
+from studio.core.take import Calibration, CarriedAlignment, Mark, Setup
 from studio.storage.take_file import Saved
 
 PRE_ROLL = 2.0  # s kept from before R
@@ -191,7 +192,7 @@ class LiveSession:
             carried = self.setup.carried
         newest = self._newest
         anchor = anchor_now()
-        identity = TakeIdentity(library, person, name, source, replace(self.setup, carried=carried), anchor)
+        identity = TakeIdentity(library, person, name, source, self._recorded_setup(carried), anchor)
         recording = Recording(await asyncio.to_thread(open_take, identity), seconds, anchor.monotonic)
         for intake in self._intakes.values():
             for link, dialect in intake.dialects.items():
@@ -206,6 +207,15 @@ class LiveSession:
                 recording.mark(mark)
         recording.mark(Mark(anchor.monotonic if first is None else max(newest, first), "record"))
         return recording
+
+    def _recorded_setup(self, carried: CarriedAlignment | None) -> Setup:
+        """Return the setup of a take; one that begins in motion is told what the filters know of the offsets."""
+        if carried is None:
+            return replace(self.setup, carried=None)
+        learned = self._solver.learned_offsets(datetime.now(UTC).isoformat(timespec="seconds"))
+        named = {calibration.sensor for calibration in learned}
+        others = [known for known in self.setup.calibrations if known.sensor not in named]
+        return replace(self.setup, carried=carried, calibrations=(*others, *learned))
 
     async def stop_recording(self) -> Saved:
         """Close the take and return once it has been read back.

@@ -107,6 +107,15 @@ class Solver:
             if track.push(sample):
                 self._remember(sample, track)
 
+    def learned_offsets(self, date: str) -> tuple[Calibration, ...]:
+        """Return what the filters have learned of the gyroscopes' offsets since they began, as calibrations."""
+        found = {sensor: track.learned() for sensor, track in self._tracks.items()}
+        return tuple(
+            Calibration(sensor, learned[0], date, "filter", offset_sigma=(learned[1],) * 3)
+            for sensor, learned in found.items()
+            if learned is not None
+        )
+
     def push(self, sample: Sample) -> list[Frame]:
         """Take the next sample and return the frames it completes (none, one, rarely two).
 

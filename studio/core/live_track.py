@@ -7,10 +7,22 @@ import numpy as np
 from studio.core import single_rotation as single
 from studio.core.attitude import open_estimator
 from studio.core.runs import is_bridged, recorrect, steps_across, uses_wire_quaternions
-from studio.core.sample import MISSING_QUATERNION, MISSING_VECTOR, Flag, Quaternion, Sample, SensorInfo, Vector
+from studio.core.sample import (
+    MISSING_QUATERNION,
+    MISSING_VECTOR,
+    NO_CORRECTION,
+    Correction,
+    Flag,
+    Quaternion,
+    Sample,
+    SensorInfo,
+    Vector,
+)
 from studio.core.take import Calibration
 from studio.core.track import estimator_for, goes_on, in_force, prior_offset_sigma
 
+CORRECTS = int(Flag.CALIBRATED | Flag.OFFSET_OK)
+SMALLEST_LEARNED = math.radians(0.05)  # rad/s; what a person who stands still leaves of an offset at best
 FILLED, IMU_ERROR = int(Flag.FILLED), int(Flag.IMU_ERROR)  # members of an IntFlag cost a microsecond each time
 
 
@@ -39,6 +51,20 @@ class LiveTrack:
         self._calibration = calibration
         if self.last is not None:
             self._filter.forget_offset(self._offset_sigma())
+
+    def learned(self) -> tuple[Correction, float] | None:
+        """Return the gyroscope's whole correction as the filter has it by now, and the offset's sigma, rad/s.
+
+        None when it knows no better than before, or when the sensor corrects by itself and did not tell how.
+        """
+        found = None if self.last is None else self._filter.learned_offset()
+        hidden = self.info.correction is None and self._flags & CORRECTS
+        if found is None or hidden or not found[1] < self._offset_sigma() / 2:
+            return None
+        calibration = self._in_force()
+        base = (self.info.correction or NO_CORRECTION) if calibration is None else calibration.correction
+        x, y, z = (np.array(base.offset) + np.linalg.solve(np.array(base.gain), found[0])).tolist()
+        return Correction((x, y, z), base.gain), max(found[1], SMALLEST_LEARNED)
 
     def accepts(self, sample: Sample) -> bool:
         """Return whether ``push`` would step the sample: it tells about turning, and does not come too late."""

@@ -24,10 +24,12 @@ def rested(place):
     return Calibration(sensor_of(place), NO_CORRECTION, "", "rest", (radians(0.03),) * 3)
 
 
+@pytest.mark.parametrize("knows", ["rest", "nothing but the holds"])
 @pytest.mark.parametrize("method", ["offline", "live"])
-def test_a_take_without_any_pose_is_solved_by_the_calibration_it_carries(tmp_path, method):
+def test_a_take_without_any_pose_is_solved_by_the_calibration_it_carries(tmp_path, method, knows):
     worn, truth = worn_take(LOWER, UNTIL + 1)
-    take = replace(worn, setup=replace(worn.setup, calibrations=tuple(rested(place) for place in LOWER)))
+    rests = tuple(rested(place) for place in LOWER) if knows == "rest" else ()
+    take = replace(worn, setup=replace(worn.setup, calibrations=rests))
     pieces = told(take)
     folders = []
 

@@ -23,6 +23,9 @@ class DeviceOrientation:
     def forget_offset(self, offset_sigma: float) -> None:
         """Go on: the device estimates its offset by itself."""
 
+    def learned_offset(self) -> None:
+        """Return None: the device keeps its offset to itself."""
+
     def run(self, run: Run) -> NDArray[np.float64]:
         """Return the orientations of the run, bridged where frames are missing."""
         return run.orientation

@@ -36,6 +36,9 @@ class Estimator(Protocol):
     def forget_offset(self, offset_sigma: float) -> None:
         """Go on from here with a gyroscope that is corrected anew, its offset known to ``offset_sigma`` rad/s."""
 
+    def learned_offset(self) -> tuple[NDArray[np.float64], float] | None:
+        """Return what ``step`` has found to be offset, (3,), rad/s, and its sigma; None when it looks for none."""
+
     def run(self, run: Run) -> NDArray[np.float64]:
         """Return ``world_from_sensor`` (n, 4) for a whole run."""
 

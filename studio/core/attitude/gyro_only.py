@@ -37,6 +37,9 @@ class GyroOnly:
     def forget_offset(self, offset_sigma: float) -> None:
         """Go on: no offset was learned."""
 
+    def learned_offset(self) -> None:
+        """Return None: no offset is looked for."""
+
     def run(self, run: Run) -> NDArray[np.float64]:
         """Return the integral, levelled over the stillest stretch of the run (its first second when none is still)."""
         start_from_sensor = cumulative_product(rotation.from_rotation_vector(run.increments))

@@ -47,6 +47,11 @@ class Vqf6D:
         """Go on from here: nothing is left to subtract, and that is known to ``offset_sigma`` rad/s."""
         self._filter.setBiasEstimate(np.zeros(3), offset_sigma)
 
+    def learned_offset(self) -> tuple[NDArray[np.float64], float] | None:
+        """Return the offset found so far, rad/s, and its sigma."""
+        offset, sigma = self._filter.getBiasEstimate()
+        return np.asarray(offset), float(sigma)
+
     def run(self, run: Run) -> NDArray[np.float64]:
         """Return the acausal estimate: forward and backward through the run."""
         rate = run.increments / self._frame_s
