@@ -178,11 +178,6 @@ class LinkTracker:
         self._events: deque[Event] = deque(maxlen=MOST_EVENTS)
         self._told_pairs: set[tuple[int, SensorId, SensorId]] = set()
 
-    @property
-    def shared_clock(self) -> tuple[float, float]:
-        """Offset (s) and skew (ppm) of the clock the synchronised sensors follow; zeros before any."""
-        return self._shared.map.offset, self._shared.map.skew
-
     def accept(self, reading: Reading, received: float) -> Sample | None:
         """Return the sample of a reading that arrived at ``received`` (s), None when it is none."""
         tracker = self._sensors.get(reading.sensor)

@@ -94,7 +94,6 @@ SEGMENT_OF: dict[Place, Segment] = {
     Place.LEFT_FOOT: Segment.LeftFoot,
     Place.RIGHT_FOOT: Segment.RightFoot,
 }
-PLACE_OF: dict[Segment, Place] = {segment: place for place, segment in SEGMENT_OF.items()}
 
 MEASURED_PARENT: dict[Place, Place] = {
     Place.HEAD: Place.CHEST,

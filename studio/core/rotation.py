@@ -198,12 +198,3 @@ def twist_about(a: ArrayLike, axis: int) -> Array:
     """
     q = np.asarray(a, np.float64)
     return np.asarray(2 * np.arctan2(q[..., 1 + axis], q[..., 0]))
-
-
-def continuous(a: ArrayLike) -> Array:
-    """Return (n, 4) quaternions with signs flipped so that neighbours lie in one hemisphere."""
-    q = np.array(a, np.float64)
-    flips = (q[1:] * q[:-1]).sum(axis=-1) < 0
-    sign = np.where(np.cumsum(flips) % 2 == 1, -1.0, 1.0)
-    q[1:] *= sign[:, None]
-    return q

@@ -44,11 +44,6 @@ def from_rotation_vector(v: Vector) -> Quaternion:
     return (math.cos(0.5 * angle), v[0] * scale, v[1] * scale, v[2] * scale)
 
 
-def about_up(angle: float) -> Quaternion:
-    """Return the turn about z by ``angle`` rad."""
-    return (math.cos(0.5 * angle), 0.0, 0.0, math.sin(0.5 * angle))
-
-
 def heading(a: Quaternion) -> float:
     """Return the turn about z in rad of the swing-twist decomposition."""
     return 2 * math.atan2(a[3], a[0])

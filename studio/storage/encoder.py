@@ -16,7 +16,6 @@ from studio.core.sample import Sample, SensorId, SensorInfo
 from studio.storage.blocks import Block, BlockBuilder, RecordFacts, encode
 from studio.storage.facts import TEXT_LIMIT, Event, Identity, SensorRecord, event_json, sensor_event, to_json
 from studio.storage.profile import (
-    BLOCK_HEAD_SIZE,
     CDR_LITTLE_ENDIAN,
     EVENT_TOPIC,
     IMU_TOPIC,
@@ -279,10 +278,3 @@ def _joined(raw: Sequence[RawBytes]) -> Iterator[dict[str, tuple[float, bytes]]]
             first.setdefault(link, received)
     if parts:
         yield {name: (first[name], b"".join(parts[name])) for name in parts}
-
-
-BYTES_PER_SAMPLE = SAMPLE_DTYPE.itemsize + 16
-"""What one sample takes in the file: its message and its entry in the index."""
-
-BYTES_PER_BLOCK = BLOCK_HEAD_SIZE + 80
-"""What a block takes besides, about."""

@@ -23,6 +23,7 @@ from studio.storage.documents import set_aside
 from studio.storage.facts import NOT_JSON, to_json
 from studio.storage.filesystem import write_atomically
 from studio.storage.limits import LONGEST_FRAME, LONGEST_TAKE, SHORTEST_FRAME, STATURES
+from studio.storage.profile import DERIVED
 from studio.storage.take_reader import take_file
 
 _CRC = struct.Struct("<I")
@@ -74,14 +75,14 @@ def save_motion(folder: Path, key: str, motion: Motion) -> None:
     parts = [msgspec.json.encode(head), b"\n"]
     parts += [a.astype("<f8").tobytes() for a in (motion.time, motion.world_from_segment, motion.hips)]
     body = b"".join([*parts, masks.tobytes()])
-    derived = folder / "derived"
+    derived = folder / DERIVED
     derived.mkdir(mode=0o700, exist_ok=True)
     write_atomically(derived / f"{key}.motion", body + _CRC.pack(zlib.crc32(body)))
 
 
 def load_motion(folder: Path, key: str) -> Motion | None:
     """Return the kept motion; None when there is none or it does not hold, which is then kept aside as ``….bad``."""
-    file = folder / "derived" / f"{key}.motion"
+    file = folder / DERIVED / f"{key}.motion"
     try:
         content = file.read_bytes()
     except OSError:

@@ -27,8 +27,6 @@ class Saved(NamedTuple):
     samples: int
     duration: float
     """s, from the first to the last kept sample"""
-    verified: bool = True
-    """Always: a take that reads back differently is not saved but raises VerificationFailed."""
 
 
 class TakeFile:

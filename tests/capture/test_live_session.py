@@ -81,7 +81,7 @@ def test_a_mistake_while_watching_ends_the_recording_too(tmp_path, legs):
 
         await session.finished(recording)
         assert [type(event.mistake) for event in events_of(session, events.MistakeMade)] == [ZeroDivisionError]
-        assert (await session.stop_recording()).verified
+        assert (await session.stop_recording()).samples > 0
         await session.disconnect()
 
     run(story())

@@ -18,7 +18,7 @@ def random_rotations(count=2000, seed=0):
 def turning_about(sequence, middle, frames=400):
     """A motion whose middle angle follows ``middle`` (rad) while the outer ones turn slowly."""
     outer = np.linspace(0, 1.5, frames)
-    return rotation.continuous(euler.from_euler(np.stack([outer, middle, -0.5 * outer], axis=1), sequence))
+    return euler.from_euler(np.stack([outer, middle, -0.5 * outer], axis=1), sequence)
 
 
 def largest_step(angles):

@@ -10,8 +10,7 @@ from studio.acquisition.dialects.dialect import Reading
 from studio.core.sample import SensorId, SensorInfo
 
 BAUD = 1_000_000  # 8N1; 15 tags at 50 Hz fill 30 % of it
-ADDRESS_SIZE = 6  # bytes of a device address, as on air: least significant first
-SERIAL_SIZE = 4  # bytes of it that are the tag's serial
+SERIAL_SIZE = 4  # bytes of a device address that are the tag's serial, as on air: least significant first
 SLOTS = 15  # tags one receiver gives time slots to
 
 LONGEST_FRAME = 64  # bytes before the closing zero; the longest we know, a packet, has 43
