@@ -89,6 +89,7 @@ class StudioWindow(QObject):
         self._at = self._disk_at = float("-inf")
         self._disk_left: float | None = None
         self._offered = ""
+        self._is_seen = False
         words = self._words()
         self._names = {place: said.name for place, said in words.items()}
         self.show = LiveShow(self.model, self.recorder, self.angles, self._names)
@@ -224,6 +225,9 @@ class StudioWindow(QObject):
         page = self.window.shown_page
         self.model.tick(now)
         self.stages.tick(now)
+        if not self._is_seen and self.show.has_body():
+            self._is_seen = True
+            self.diagnostics.note(self.tr("the figure moves"))
         self.connect_.tick(now, shown=page == "connect")
         self.assign.tick(now, shown=page == "assign")
         self.calibrate.tick(now, shown=page == "calibrate")

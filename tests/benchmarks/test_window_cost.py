@@ -29,7 +29,7 @@ class Watch(QObject):
     def note_shown(self, _):
         _, self._shown = self._studio.model.buffer.newest()
 
-    def eventFilter(self, watched, event):
+    def eventFilter(self, watched, event):  # noqa: N802 (Qt's name)
         if event.type() == QEvent.Type.Paint and self._shown is not self._painted:
             self._painted = self._shown
             QTimer.singleShot(0, self.note_painted)
