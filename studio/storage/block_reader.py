@@ -70,7 +70,7 @@ class BlockReader:
         self.finished = False
         """The file has its end."""
         self._stream = stream
-        self._path = path
+        self.path = path
         self._size = stream.seek(0, 2)
         self.take = b""
         """The identity of the file, 8 bytes."""
@@ -114,7 +114,7 @@ class BlockReader:
             whole = not cut_off and zlib.crc32(body) == fields["body_crc"]
             records = list(islice(_split(body, whole, cut_off), MAX_RECORDS + 1))
             if len(records) > MAX_RECORDS:
-                raise TakeUnsafe(str(self._path), f"a block has more than {MAX_RECORDS} records")
+                raise TakeUnsafe(str(self.path), f"a block has more than {MAX_RECORDS} records")
             for record in records:
                 self._learn(record)
             yield records
@@ -143,12 +143,12 @@ class BlockReader:
         data = content[CHUNK_HEAD.size - RECORD_HEAD_SIZE :]
         if compression:
             if record.trusted:
-                raise TakeUnsafe(str(self._path), "a chunk is compressed, which no take is")
+                raise TakeUnsafe(str(self.path), "a chunk is compressed, which no take is")
             return None
         if size != len(data) or data_size != len(data) or zlib.crc32(data) != crc:
             return None
         if size > MAX_CHUNK:
-            raise TakeUnsafe(str(self._path), f"a chunk has {size} bytes, more than {MAX_CHUNK}")
+            raise TakeUnsafe(str(self.path), f"a chunk has {size} bytes, more than {MAX_CHUNK}")
         opcode, length, channel = unpack_from("<BQH", data)
         stride = RECORD_HEAD_SIZE + length
         if opcode != MESSAGE or stride < MESSAGE_HEAD_SIZE or len(data) % stride:
@@ -160,19 +160,21 @@ class BlockReader:
             return
         try:
             if record.opcode == Opcode.CHANNEL:
-                channel = Channel.read(_stream(record.content))
-                self.channels.setdefault(channel.id, channel)
+                # They stand again every 10 s; the first two bytes are the id.
+                if int.from_bytes(record.content[:2], "little") not in self.channels:
+                    channel = Channel.read(_stream(record.content))
+                    self.channels[channel.id] = channel
             elif self.identity is None:
                 self._learn_identity(Metadata.read(_stream(record.content)).metadata)
         except (*_NO_RECORD, *NOT_JSON):
             self.damaged += 1
         if len(self.channels) > MAX_CHANNELS:
-            raise TakeUnsafe(str(self._path), f"more than {MAX_CHANNELS} channels")
+            raise TakeUnsafe(str(self.path), f"more than {MAX_CHANNELS} channels")
 
     def _learn_identity(self, facts: dict[str, str]) -> None:
         profile = facts.get("profile", PROFILE)
         if profile != PROFILE:
-            raise WrittenByNewerStudio(str(self._path), profile[:64], PROFILE)
+            raise WrittenByNewerStudio(str(self.path), profile[:64], PROFILE)
         if "take" in facts:
             self.identity = cleaned_identity(self._believed(facts["take"]))
 
@@ -180,10 +182,10 @@ class BlockReader:
         try:
             identity = from_json(text, Identity)
         except SetupError as error:  # two sensors on one place
-            raise TakeUnsafe(str(self._path), "its setup contradicts itself") from error
+            raise TakeUnsafe(str(self.path), "its setup contradicts itself") from error
         fault = setup_fault(identity.setup) or ("" if abs(identity.anchor.monotonic) <= LARGEST_NUMBER else "monotonic")
         if fault:
-            raise TakeUnsafe(str(self._path), f"{fault} is not possible")
+            raise TakeUnsafe(str(self.path), f"{fault} is not possible")
         return identity
 
     def _count_missing(self, number: int) -> None:
@@ -195,7 +197,7 @@ class BlockReader:
             return False
         fields = parse_head(head)
         if fields["body_length"] > MAX_BLOCK:
-            raise TakeUnsafe(str(self._path), f"a block has {fields['body_length']} bytes, more than {MAX_BLOCK}")
+            raise TakeUnsafe(str(self.path), f"a block has {fields['body_length']} bytes, more than {MAX_BLOCK}")
         take = fields["take"].tobytes()
         self.take = self.take or take
         # Pages of another take, or of this one a second time, are what a power cut may leave.
@@ -232,7 +234,7 @@ class BlockReader:
     def _waste(self, size: int) -> None:
         self._garbage += size
         if self._garbage > MAX_GARBAGE:
-            raise TakeUnsafe(str(self._path), f"more than {MAX_GARBAGE >> 20} MiB of it are no take")
+            raise TakeUnsafe(str(self.path), f"more than {MAX_GARBAGE >> 20} MiB of it are no take")
 
     def _read_header(self) -> bytes:
         lead = self._read(0, len(MAGIC) + RECORD_HEAD_SIZE)
@@ -250,8 +252,8 @@ class BlockReader:
         except _NO_RECORD:
             profile = ""
         if profile.startswith(FAMILY) and profile != PROFILE:
-            raise WrittenByNewerStudio(str(self._path), profile[:64], PROFILE)
-        raise NotATake(str(self._path))
+            raise WrittenByNewerStudio(str(self.path), profile[:64], PROFILE)
+        raise NotATake(str(self.path))
 
     def _read(self, position: int, length: int) -> bytes:
         self._stream.seek(position)

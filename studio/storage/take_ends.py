@@ -5,7 +5,7 @@ A list of thousands of takes cannot read them. What is damaged in the middle is 
 
 import struct
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from io import BytesIO
 from itertools import islice
 from pathlib import Path
@@ -73,7 +73,6 @@ class _Closing:
     attachments: int
     """Where the first one is, bytes; ``data_end`` without any."""
     counts: Mapping[int, int] | None = None
-    channels: dict[int, Channel] = field(default_factory=dict)
 
 
 def read_ends(file: Path, stream: BinaryIO) -> Ends:
@@ -83,20 +82,18 @@ def read_ends(file: Path, stream: BinaryIO) -> Ends:
     ------
     NotATake, WrittenByNewerStudio, TakeUnsafe, OSError
     """
-    size = stream.seek(0, 2)
-    closing = _closing(stream, size)
     head = BlockReader(stream, file)
     first = next((rows for m in islice(head.messages(), FIRST_CHUNKS) if _is_imu(m, head.channels)
                   and (rows := sample_rows(m)) is not None), _no_rows())  # fmt: skip
-    channels = head.channels | ({} if closing is None else closing.channels)
-    end = size if closing is None else closing.attachments
-    last, told = _last(file, stream, end, channels)
+    closing = _closing(stream, head)
+    end = stream.seek(0, 2) if closing is None else closing.attachments
+    last, told = _last(stream, end, head)
     recovered = closing is None or told
     if closing is not None and closing.attachments < closing.data_end:
         window = _read(stream, max(closing.data_end - WINDOWS[0], 0), closing.data_end)
-        recovered |= _tells_recovered(_chunks(window, file, channels), channels)
+        recovered |= _tells_recovered(_chunks(window, head), head.channels)
     counts = None if closing is None else closing.counts
-    return Ends(head.identity, _sensors(channels, file), first, last, counts, recovered)
+    return Ends(head.identity, _sensors(head.channels, file), first, last, counts, recovered)
 
 
 def _sensors(channels: Mapping[int, Channel], file: Path) -> dict[int, SensorRecord]:
@@ -109,15 +106,15 @@ def _sensors(channels: Mapping[int, Channel], file: Path) -> dict[int, SensorRec
     return records
 
 
-def _last(file: Path, stream: BinaryIO, end: int, channels: dict[int, Channel]) -> tuple[Rows, bool]:
+def _last(stream: BinaryIO, end: int, head: BlockReader) -> tuple[Rows, bool]:
     """Return the last samples, and whether the blocks around them say "recovered"; learn channels on the way."""
     recovered = False
     for width in WINDOWS:
         start = max(end - width, 0)
-        chunks = _chunks(_read(stream, start, end), file, channels)
-        recovered |= _tells_recovered(chunks, channels)
+        chunks = _chunks(_read(stream, start, end), head)
+        recovered |= _tells_recovered(chunks, head.channels)
         for messages in reversed(chunks):
-            rows = sample_rows(messages) if _is_imu(messages, channels) else None
+            rows = sample_rows(messages) if _is_imu(messages, head.channels) else None
             if rows is not None:
                 return rows, recovered
         if start == 0:
@@ -125,15 +122,13 @@ def _last(file: Path, stream: BinaryIO, end: int, channels: dict[int, Channel]) 
     return _no_rows(), recovered
 
 
-def _chunks(window: bytes, file: Path, channels: dict[int, Channel]) -> list[Messages]:
-    reader = BlockReader(BytesIO(window), file)
+def _chunks(window: bytes, head: BlockReader) -> list[Messages]:
+    reader = BlockReader(BytesIO(window), head.path)
+    reader.channels, reader.identity = head.channels, head.identity
     try:
-        chunks = list(reader.messages())
+        return list(reader.messages())
     except NotATake:  # no block begins in this window
         return []
-    for number, channel in reader.channels.items():
-        channels.setdefault(number, channel)
-    return chunks
 
 
 def _is_imu(messages: Messages, channels: Mapping[int, Channel]) -> bool:
@@ -146,8 +141,9 @@ def _tells_recovered(chunks: list[Messages], channels: Mapping[int, Channel]) ->
     return any(messages.channel in events and _RECOVERED in messages.data for messages in chunks)
 
 
-def _closing(stream: BinaryIO, size: int) -> _Closing | None:
-    """Return what stands behind the data, None when the file was cut off."""
+def _closing(stream: BinaryIO, head: BlockReader) -> _Closing | None:
+    """Return what stands behind the data, None when the file was cut off; learn channels on the way."""
+    size = stream.seek(0, 2)
     footer_at = size - len(MAGIC) - _FOOTER.size
     if footer_at < 0:
         return None
@@ -158,27 +154,30 @@ def _closing(stream: BinaryIO, size: int) -> _Closing | None:
     closing = _Closing(data_end=summary_at, attachments=summary_at)
     try:
         for group in _records(_read(stream, offsets_at, footer_at), Opcode.SUMMARY_OFFSET):
-            _learn(closing, stream, SummaryOffset.read(group))
+            _learn(closing, stream, SummaryOffset.read(ReadDataStream(BytesIO(group))), head.channels)
     except _NOT_MCAP:
         return _Closing(data_end=summary_at, attachments=summary_at)
     return closing
 
 
-def _learn(closing: _Closing, stream: BinaryIO, group: SummaryOffset) -> None:
+def _learn(closing: _Closing, stream: BinaryIO, group: SummaryOffset, channels: dict[int, Channel]) -> None:
     kind = group.group_opcode
     if kind not in (Opcode.CHANNEL, Opcode.STATISTICS, Opcode.ATTACHMENT_INDEX) or group.group_length > GROUP_LIMIT:
         return
     for content in _records(_read(stream, group.group_start, group.group_start + group.group_length), kind):
+        if kind == Opcode.CHANNEL and int.from_bytes(content[:2], "little") in channels:
+            continue
+        data = ReadDataStream(BytesIO(content))
         if kind == Opcode.STATISTICS:
-            closing.counts = Statistics.read(content).channel_message_counts
+            closing.counts = Statistics.read(data).channel_message_counts
         elif kind == Opcode.CHANNEL:
-            channel = Channel.read(content)
-            closing.channels[channel.id] = channel
+            channel = Channel.read(data)
+            channels[channel.id] = channel
         else:
-            closing.attachments = min(closing.attachments, AttachmentIndex.read(content).offset)
+            closing.attachments = min(closing.attachments, AttachmentIndex.read(data).offset)
 
 
-def _records(data: bytes, kind: int) -> Iterator[ReadDataStream]:
+def _records(data: bytes, kind: int) -> Iterator[bytes]:
     position = 0
     for _ in range(MAX_CHANNELS):
         if position + RECORD_HEAD_SIZE > len(data):
@@ -186,7 +185,7 @@ def _records(data: bytes, kind: int) -> Iterator[ReadDataStream]:
         opcode, length = _RECORD.unpack_from(data, position)
         position += RECORD_HEAD_SIZE
         if opcode == kind:
-            yield ReadDataStream(BytesIO(data[position : position + length]))
+            yield data[position : position + length]
         position += length
 
 

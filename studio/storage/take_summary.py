@@ -1,6 +1,7 @@
 """A line about each take of the library, and what people may change of it."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -11,6 +12,7 @@ import numpy as np
 from studio.core.body import Place
 from studio.core.errors import FolderNotWritable, NotATake, TakeFileError
 from studio.storage.limits import LONGEST_TAKE
+from studio.storage.sample_table import Rows
 from studio.storage.session_folder import list_takes
 from studio.storage.take_ends import Ends, read_ends
 from studio.storage.take_json import Verdict, load_document, save_document
@@ -87,8 +89,10 @@ def keep_summary(summary: TakeSummary) -> None:
 
     Raises
     ------
-    WrittenByNewerStudio, FolderNotWritable
+    NotATake, WrittenByNewerStudio, FolderNotWritable
+        NotATake when the take or its whole library is gone meanwhile.
     """
+    take_file(summary.folder)
     document, _ = load_document(summary.folder, summary.name, repair=False)
     changed = msgspec.structs.replace(document, name=summary.name, notes=summary.notes, verdict=summary.verdict)
     try:
@@ -106,7 +110,7 @@ def _recorded(bare: TakeSummary, ends: Ends) -> TakeSummary:
         samples = sum(ends.counts.get(channel, 0) for channel in ends.sensors)
     else:  # messages of sensors carry their position among all samples of the take
         samples = int(ends.last["sequence"].max()) + 1 if len(ends.last) else 0
-    expected = sum(_expected(ends, channel, duration) for channel in ends.sensors) if samples else 0.0
+    expected = sum(_expected(ends, duration)) if samples else 0.0
     known = ends.identity
     frames = [record.info.frame_s for record in ends.sensors.values() if record.info.frame_s > 0]
     return replace(
@@ -124,11 +128,22 @@ def _recorded(bare: TakeSummary, ends: Ends) -> TakeSummary:
     )
 
 
-def _expected(ends: Ends, channel: int, duration: float) -> float:
-    """Return how many samples a sensor sent, by its own count where that runs from end to end."""
-    first = ends.first[ends.first["channel"] == channel]
-    last = ends.last[ends.last["channel"] == channel]
-    if len(first) and len(last) and first["epoch"][0] == last["epoch"][-1]:
-        return float(int(last["frame"].max()) - int(first["frame"].min()) + 1)
-    frame_s = ends.sensors[channel].info.frame_s
-    return math.floor(duration / frame_s + 1e-6) + 1.0 if frame_s > 0 else math.nan
+def _expected(ends: Ends, duration: float) -> Iterator[float]:
+    """Yield how many samples each sensor sent, by its own count where that runs from end to end."""
+    first, last = _Counted(ends.first), _Counted(ends.last)
+    for channel, record in ends.sensors.items():
+        begin, end = np.flatnonzero(first.channel == channel), np.flatnonzero(last.channel == channel)
+        if len(begin) and len(end) and first.epoch[begin[0]] == last.epoch[end[-1]]:
+            yield float(int(last.frame[end].max()) - int(first.frame[begin].min()) + 1)
+            continue
+        frame_s = record.info.frame_s
+        yield math.floor(duration / frame_s + 1e-6) + 1.0 if frame_s > 0 else math.nan
+
+
+class _Counted:
+    """Columns of rows, each in one piece: they are looked at once for each sensor."""
+
+    def __init__(self, rows: Rows) -> None:
+        self.channel = rows["channel"].copy()
+        self.epoch = rows["epoch"].copy()
+        self.frame = rows["frame"].copy()

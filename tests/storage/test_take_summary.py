@@ -192,6 +192,17 @@ def test_a_take_in_the_library_that_is_gone_meanwhile_is_listed_with_the_reason(
     assert isinstance(summarise(folder).refusal, NotATake)
 
 
+def test_a_library_that_is_gone_meanwhile_is_not_called_read_only(tmp_path: Path) -> None:
+    library = tmp_path / "library"
+    summary = summarise(record(library))
+    shutil.rmtree(library)
+
+    with pytest.raises(NotATake):
+        keep_summary(replace(summary, verdict="bad"))
+    assert not library.exists()
+    assert summaries(library) == []
+
+
 def test_a_verdict_survives_a_change_of_the_document(tmp_path: Path) -> None:
     folder = record(tmp_path)
     save_document(folder, TakeDocument(name="walk", verdict="bad"))
