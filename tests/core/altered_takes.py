@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 
 from studio.core import rotation
-from studio.core.take import Take
+from studio.core.sample import NO_CORRECTION
+from studio.core.take import Calibration, Take
 from tests.core.worn_sensors import RATE, sensor_of
 
 
@@ -44,3 +45,12 @@ def cut(take: Take, from_s) -> Take:
         part = kept(stream, stream.time >= from_s - 0.5 / RATE)
         streams.append(replace(part, time=part.time - from_s, received=part.received - from_s))
     return replace(take, streams=tuple(streams), marks=())
+
+
+def rested(take: Take) -> Take:
+    """Return the take of tags whose offsets were measured on a table: none is left, to 0.03 °/s."""
+    known = tuple(
+        Calibration(sensor, NO_CORRECTION, "", "rest", (np.radians(0.03),) * 3)
+        for sensor in take.setup.assignment.sensors.values()
+    )
+    return replace(take, setup=replace(take.setup, calibrations=known))

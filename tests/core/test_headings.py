@@ -10,11 +10,10 @@ from studio.core.body import PRESETS, SEGMENT_OF, Place
 from studio.core.errors import HeadingsUnknown, MovedDuringHold
 from studio.core.headings import turn_between
 from studio.core.live_solver import Solver, samples_of
-from studio.core.sample import NO_CORRECTION
 from studio.core.solver import SolveOptions, solve, solve_tracks
-from studio.core.take import Alignment, Calibration, CarriedAlignment, Mark
+from studio.core.take import Alignment, CarriedAlignment, Mark
 from studio.core.track import attitude_at
-from tests.core.altered_takes import changed, cut, restarted, silent
+from tests.core.altered_takes import changed, cut, restarted, rested, silent
 from tests.core.worn_sensors import BOW_HOLD, N_HOLD, RATE, procedure, sensor_of, worn_take
 
 LOWER = PRESETS["lower"]
@@ -164,10 +163,8 @@ def carrying(began=11.0, places=LOWER):
         seen[place] = tuple(rotation.multiply(truth[place][round(began * RATE)], segment_from_sensor).tolist())
     moved = replace(alignment, from_s=N_HOLD.time - began, to_s=N_HOLD.end - began)
     carried = CarriedAlignment(moved, 0.0, seen)
-    late = cut(take, began)
-    # Nobody rests in a take that begins in motion: their offsets were measured before.
-    rested = tuple(Calibration(sensor_of(p), NO_CORRECTION, "", "rest", (np.radians(0.03),) * 3) for p in places)
-    late = replace(late, setup=replace(late.setup, carried=carried, calibrations=rested))
+    late = rested(cut(take, began))  # nobody rests in a take that begins in motion
+    late = replace(late, setup=replace(late.setup, carried=carried))
     return late, {place: true[round(began * RATE) :] for place, true in truth.items()}
 
 

@@ -66,6 +66,29 @@ def test_a_person_standing_still_is_at_rest_only_when_that_is_asked_for():
     assert worn.sigma.max() > np.radians(0.1)  # sway is part of the uncertainty
 
 
+def swaying(seconds, rng):
+    """Somebody stands: 0.5° of smooth sway, a way of a second or two from side to side, on top of the offset."""
+    kernel = np.exp(-0.5 * (np.arange(-140, 141) * FRAME / 0.7) ** 2)
+    kernel *= np.radians(0.5) / np.sqrt((kernel**2).sum())
+    count = round(seconds / FRAME) + 1
+    angle = np.stack([np.convolve(rng.normal(size=count + 280), kernel, "valid") for _ in range(3)], axis=1)
+    return OFFSET + np.diff(angle, axis=0) / FRAME, np.tile([0.0, 0.0, GRAVITY], (count - 1, 1))
+
+
+@pytest.mark.parametrize("seconds", [5.0, 8.0])
+def test_standing_the_stated_uncertainty_covers_the_error_and_is_not_much_more(seconds):
+    """Block means of one who sways are not independent: type A alone covers 78 and 89 % of these."""
+    errors, sigmas = [], []
+    for seed in range(150):
+        rest = found(*swaying(seconds, np.random.default_rng(seed)), spread=RATE_SPREAD_WORN)
+        errors.append(rest.offset - OFFSET)
+        sigmas.append(rest.sigma)
+
+    covered = np.mean(np.abs(np.array(errors)) < 2 * np.array(sigmas))
+    assert covered > 0.94
+    assert np.median(sigmas) < 2.5 * np.sqrt(np.mean(np.array(errors) ** 2))
+
+
 def test_turning_steadily_is_not_rest():
     n = 500
     t = np.arange(n) * FRAME

@@ -8,11 +8,11 @@ import pytest
 from studio.core import rotation
 from studio.core.body import PRESETS, SEGMENT_OF, Place
 from studio.core.errors import HeadingsUnknown
-from studio.core.sample import NO_CORRECTION, Correction, Flag, SensorInfo
+from studio.core.sample import Correction, Flag, SensorInfo
 from studio.core.solver import SolveOptions, solve, solve_tracks
 from studio.core.strapping import strap_rule
 from studio.core.take import Calibration
-from tests.core.altered_takes import changed, kept, silent
+from tests.core.altered_takes import changed, kept, rested, silent
 from tests.core.worn_sensors import BOW_HOLD, N_HOLD, RATE, mounted, sensor_of, stream, worn_take
 
 LOWER = PRESETS["lower"]
@@ -35,11 +35,8 @@ def true_knee(truth):
 def test_after_a_silence_in_the_middle_of_a_swing_the_angles_are_right_at_once(method, from_s, to_s):
     """The tag's own quaternion leads across: tilt and heading both go on, and the filter need not settle."""
     take, truth = worn_take(LOWER)
-    rested = {
-        sensor_of(p): Calibration(sensor_of(p), NO_CORRECTION, "", "rest", (np.radians(0.03),) * 3) for p in LOWER
-    }
 
-    motion = solve(silent(take, THIGH, from_s, to_s), SolveOptions(method=method, calibrations=rested)).motion
+    motion = solve(rested(silent(take, THIGH, from_s, to_s)), SolveOptions(method=method)).motion
 
     after = motion.measured[THIGH] & (motion.time > to_s)
     assert after.sum() > 100
