@@ -45,15 +45,15 @@ class LiveShow(QObject):
             self._skeleton = Skeleton.from_stature(self._model.setup.stature)
         return self._skeleton
 
-    def next_pose(self, now: float) -> StagePose | None:
-        """Return the newest pose when it is another one, and keep the angles up to date."""
+    def next_pose(self, now: float, *, with_angles: bool) -> StagePose | None:
+        """Return the newest pose when it is another one, and keep the angles up to date where they are seen."""
         _, pose = self._model.buffer.newest()
         alignment = self._model.alignment
         if pose is None or pose is self._newest or alignment is None:
             return None
         self._newest = pose
         skeleton = self.skeleton()
-        if now - self._angles_at >= ANGLES_EVERY:
+        if with_angles and now - self._angles_at >= ANGLES_EVERY:
             self._angles_at = now
             self._angles.add(pose, alignment, skeleton)
         joints = skeleton.joint_positions(pose.world_from_segment, pose.hips)

@@ -52,10 +52,10 @@ class Stages(QObject):
         return True
 
     def tick(self, now: float) -> None:
-        """Let time pass; the angles are kept up to date whatever page is looked at."""
-        pose = self._show.next_pose(now)
+        """Let time pass. The angles are followed where they are seen: they cost as much as the figure."""
         if self._page not in LIVE:
             return
+        pose = self._show.next_pose(now, with_angles=self._page == "capture")
         stage = self._stages[self._page]
         skeleton = self._show.skeleton()
         if skeleton is not self._skeleton:
