@@ -11,8 +11,10 @@ from studio.core.pose import Motion
 from studio.core.sample import SensorId
 from studio.core.solver import SolveOptions, solve, solve_tracks
 from studio.core.take import Alignment, Calibration, Mark, Take
+from studio.export.file_target import check_target
 from studio.export.material import Material, Wish
 from studio.export.registry import export_file
+from studio.export.sidecar import digest_of
 from studio.importers.bvh import read_bvh
 from studio.storage.motion_file import load_motion, motion_key, save_motion
 from studio.storage.tag_file import load_tag, read_calibration, tags_folder
@@ -44,6 +46,8 @@ class ExportRequest:
     exporter: str
     wish: Wish
     target: Path
+    overwrite: bool = False
+    """Whatever stands at the target is replaced; else only what this studio wrote from the same take."""
 
 
 class Offset(NamedTuple):
@@ -111,6 +115,7 @@ def run_export(request: ExportRequest, progress: Progress) -> tuple[Path, tuple[
     TakeFileError, CalibrationError, AlignmentError, ExportError
     """
     loaded = load(request.solve, progress)
+    check_target(request.target, digest_of(loaded.take), overwrite=request.overwrite)
     progress("solve", 0.2)
     motion, orientations = None, {}
     if request.exporter in ("bvh", "joints"):

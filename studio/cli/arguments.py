@@ -108,6 +108,7 @@ def _export(add: AddVerb) -> None:
         help=f"of bvh: {', '.join(map(str, RATES))} or native (default: {DEFAULT_RATE})",
     )
     verb.add_argument("-o", "--output", type=Path, required=True, metavar="FILE")
+    verb.add_argument("--overwrite", action="store_true", help="replace a file that is there, whoever made it")
     _add_solving(verb)
     verb.set_defaults(run=verbs.export, usage_error=verb.error)
 

@@ -70,7 +70,11 @@ def export(arguments: Namespace) -> None:
         arguments.usage_error("--table goes with --format csv")
     exporter = "bvh" if arguments.format == "bvh" else (arguments.table or "joints")
     request = jobs.ExportRequest(
-        _solve_request(arguments), exporter, Wish(preset, arguments.fps), Path(arguments.output).absolute()
+        _solve_request(arguments),
+        exporter,
+        Wish(preset, arguments.fps),
+        Path(arguments.output).absolute(),
+        arguments.overwrite,
     )
     written, notes = _in_worker(jobs.run_export, request)
     for note in notes:

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,4 +47,5 @@ class Product:
     blocks: Iterable[bytes]
     read_back: Callable[[Path], None]
     """Raises ReadBackDiffers unless the file at the path says what was meant."""
-    sidecar: bytes
+    sidecar: Mapping[str, Any]
+    """What ``sidecar.sidecar`` returned."""

@@ -4,8 +4,9 @@ from importlib import import_module
 from pathlib import Path
 
 from studio.core.errors import ReadBackDiffers
-from studio.export.file_target import write_file
+from studio.export.file_target import sidecar_of, write_file
 from studio.export.material import Material, Product, Wish
+from studio.export.sidecar import as_text
 
 EXPORTERS = {
     "bvh": "studio.export.bvh_export:export_bvh",
@@ -17,7 +18,7 @@ EXPORTERS = {
 
 
 def export_file(name: str, material: Material, wish: Wish, path: Path) -> tuple[Path, Path]:
-    """Write ``path`` and ``path``.json, each read back first; return both.
+    """Write ``path`` and ``path``.json, each read back first; return both. Whatever stood there is replaced.
 
     Raises
     ------
@@ -26,12 +27,13 @@ def export_file(name: str, material: Material, wish: Wish, path: Path) -> tuple[
     """
     module, function = EXPORTERS[name].split(":")
     product: Product = getattr(import_module(module), function)(material, wish)
-    beside = path.with_name(path.name + ".json")
-    write_file(path, product.blocks, product.read_back)
+    beside = sidecar_of(path)
+    written = write_file(path, product.blocks, product.read_back)
+    text = as_text({**product.sidecar, "file": written._asdict()})
 
-    def same_text(written: Path) -> None:
-        if written.read_bytes() != product.sidecar:
-            raise ReadBackDiffers(str(written), "the text differs")
+    def same_text(part: Path) -> None:
+        if part.read_bytes() != text:
+            raise ReadBackDiffers(str(part), "the text differs")
 
-    write_file(beside, [product.sidecar], same_text)
+    write_file(beside, [text], same_text)
     return path, beside

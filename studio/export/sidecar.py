@@ -1,5 +1,6 @@
 """What a file of numbers cannot say of itself, as JSON beside it."""
 
+import hashlib
 import json
 import math
 from collections.abc import Mapping
@@ -14,10 +15,11 @@ from studio.core.body import PLACES
 from studio.core.pose import Motion
 from studio.core.sample import Stream
 from studio.core.take import Alignment, Calibration, LimbAlignment, Take
+from studio.export.file_target import PROGRAM
 
 
-def sidecar(take: Take, motion: Motion | None, of_the_file: Mapping[str, Any]) -> bytes:
-    """Return the JSON text (UTF-8) that stands beside an exported file.
+def sidecar(take: Take, motion: Motion | None, of_the_file: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what stands beside an exported file.
 
     Parameters
     ----------
@@ -28,7 +30,7 @@ def sidecar(take: Take, motion: Motion | None, of_the_file: Mapping[str, Any]) -
     """
     assignment = take.setup.assignment
     content: dict[str, Any] = {
-        "made_by": {"program": "Kinetag Studio", "version": studio.__version__},
+        "made_by": {"program": PROGRAM, "version": studio.__version__},
         "take": {
             "name": take.name,
             "person": take.person,
@@ -36,6 +38,7 @@ def sidecar(take: Take, motion: Motion | None, of_the_file: Mapping[str, Any]) -
             "started": take.started,
             "duration_s": take.duration(),
             "versions": dict(take.versions),
+            "samples_sha256": digest_of(take),
         },
         "body": {"stature_m": take.setup.stature, "stature_known": take.setup.stature_known},
         "sensors": [_sensor(take, *pair) for pair in zip(take.streams, ledger(take), strict=True)],
@@ -50,7 +53,22 @@ def sidecar(take: Take, motion: Motion | None, of_the_file: Mapping[str, Any]) -
             "interpolated_share": {place.value: _share(motion, lost) for place, lost in motion.lost.items()},
             "notes": list(motion.notes),
         }
+    return content
+
+
+def as_text(content: Mapping[str, Any]) -> bytes:
+    """Return JSON in UTF-8, with null for numbers that are unknown."""
     return (json.dumps(_finite(content), ensure_ascii=False, allow_nan=False, indent=2) + "\n").encode()
+
+
+def digest_of(take: Take) -> str:
+    """Return the SHA-256 of all samples: the same for one take only, whatever it is called now."""
+    digest = hashlib.sha256()
+    for stream in take.streams:
+        digest.update(stream.info.sensor.encode())
+        for values in (stream.time, stream.received, stream.orientation, stream.rate, stream.acceleration):
+            digest.update(values.tobytes())
+    return digest.hexdigest()
 
 
 def _sensor(take: Take, stream: Stream, account: SensorLedger) -> dict[str, Any]:
@@ -104,7 +122,7 @@ def _finite(value: Any) -> Any:
     """Return the same content with null for numbers that are unknown: JSON has no NaN."""
     if isinstance(value, float):
         return value if math.isfinite(value) else None
-    if isinstance(value, dict):
+    if isinstance(value, Mapping):
         return {key: _finite(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
         return [_finite(item) for item in value]
