@@ -35,7 +35,7 @@ def items(plot):
 def test_left_is_solid_and_right_is_dashed(plot):
     plot.show_curves(knees())
 
-    assert [item.opts["pen"].style() for item in items(plot)] == [Qt.PenStyle.SolidLine, Qt.PenStyle.CustomDashLine]
+    assert [item.pen.style() for item in items(plot)] == [Qt.PenStyle.SolidLine, Qt.PenStyle.CustomDashLine]
 
 
 def test_a_whole_take_is_shown_and_no_peak_is_lost(plot):
@@ -44,7 +44,7 @@ def test_a_whole_take_is_shown_and_no_peak_is_lost(plot):
 
     plot.show_curves([AngleCurve("left knee flexion", "left", TIME, peaked)])
 
-    _, y = items(plot)[0].getData()
+    _, y = items(plot)[0].drawn[:2]
     assert plot.shown_range == pytest.approx((0.0, 59.98))
     assert y.max() == 111.0
     assert plot.view.viewRange()[1][1] >= 111.0
@@ -56,13 +56,13 @@ def test_no_peak_and_no_gap_of_an_hour_is_lost(plot):
     peaked[123456], peaked[200000:210000] = 111.0, np.nan
 
     plot.show_curves([AngleCurve("left knee flexion", "left", time, peaked)])
-    x, y = items(plot)[0].getData()
+    x, y = items(plot)[0].drawn[:2]
     assert len(x) <= plot.width()
     assert y.max() == 111.0
     assert not ((x > 2000.5) & (x < 2099.5)).any()
 
     plot.set_range(1234.0, 1235.0)
-    x, y = items(plot)[0].getData()
+    x, y = items(plot)[0].drawn[:2]
     assert len(x) > 99
     assert x[y.argmax()] == pytest.approx(1234.56)
 
@@ -72,7 +72,7 @@ def test_a_part_can_be_shown(plot):
 
     plot.set_range(10.0, 12.0)
 
-    x, _ = items(plot)[0].getData()
+    x, _ = items(plot)[0].drawn[:2]
     assert plot.view.viewRange()[0] == pytest.approx([10.0, 12.0])
     assert (x.min(), x.max()) == pytest.approx((10.0, 12.0), abs=0.021)
 
@@ -85,7 +85,7 @@ def test_a_range_must_have_a_length(plot):
 def test_the_last_ten_seconds_slide(plot):
     plot.show_live(knees(), 30.0)
 
-    x, _ = items(plot)[0].getData()
+    x, _ = items(plot)[0].drawn[:2]
     assert plot.shown_range == (20.0, 30.0)
     assert plot.view.viewRange()[0] == pytest.approx([-10.0, 0.0])
     assert (x.min(), x.max()) == pytest.approx((-10.0, 0.0), abs=0.021)

@@ -31,7 +31,7 @@ def items(plot):
 
 
 def curves(plot):
-    return [curve.getData() for curve in items(plot)]
+    return [curve.drawn[:2] for curve in items(plot)]
 
 
 def drawn(plot):
@@ -124,8 +124,8 @@ def test_an_angle_that_passes_180_degrees_is_no_stroke_across_the_plot(plot):
     plot.show_window(turned, 100.0)
 
     for curve in items(plot):
-        _, y = curve.getData()
-        joined = curve.opts["connect"]
+        y = curve.drawn.y
+        joined = curve.drawn.joined
         steps = np.abs(np.diff(y))
         assert steps.max() < 10 or not joined[:-1][steps > 180].any()
 

@@ -1,7 +1,7 @@
 """The ground of all plots: light grid, no box, labels at the ends of the lines.
 
-pyqtgraph draws the curves; the axes are ours, because its axis items cost more than three curves, and are kept as a
-picture as long as neither range nor size changes.
+pyqtgraph has the view and its ranges. The axes are ours, because its axis items cost more than three curves, and are
+kept as a picture as long as neither range nor size changes.
 """
 
 import math
@@ -13,8 +13,8 @@ import numpy as np
 import pyqtgraph as pg
 from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QFocusEvent, QFontMetricsF, QPainter, QPen, QResizeEvent, QShowEvent
-from PySide6.QtWidgets import QFrame, QGraphicsView, QSizePolicy, QWidget
+from PySide6.QtGui import QColor, QFocusEvent, QFontMetricsF, QPainter, QPainterPath, QPen, QResizeEvent, QShowEvent
+from PySide6.QtWidgets import QFrame, QGraphicsView, QSizePolicy, QStyleOptionGraphicsItem, QWidget
 
 from studio.ui.theme import FOCUS, GAP, GRID, Theme
 
@@ -39,20 +39,55 @@ class EndLabel(NamedTuple):
     colour: str
 
 
-class Curve(pg.PlotCurveItem):
-    """A curve that is as large as its view: pyqtgraph looks for least and most of the data four times a picture."""
+class Drawn(NamedTuple):
+    """The points of a curve in the units of its axes."""
+
+    x: NDArray[np.float64]
+    """(n,)."""
+    y: NDArray[np.float64]
+    """(n,)."""
+    joined: NDArray[np.bool_]
+    """(n,), whether a point is joined to the next."""
+
+
+class Curve(pg.GraphicsObject):
+    """A line, broken where points are not joined; as large as its view, so that nobody asks for least and most of it.
+
+    pyqtgraph's own curve checks and converts for each picture what we know already: it costs twice as much.
+    """
 
     def __init__(self) -> None:
-        super().__init__(skipFiniteCheck=True, antialias=True)
+        super().__init__()
+        self.pen = QPen()
+        self._path = QPainterPath()
+        self.clear()
+
+    def setPen(self, pen: QPen) -> None:  # noqa: N802 (as Qt's painter calls it)
+        """Draw with this pen from now on."""
+        self.pen = pen
+        self.update()
+
+    def draw(self, x: NDArray[np.float64], y: NDArray[np.float64], joined: NDArray[np.bool_]) -> None:
+        """Draw these points, ``joined`` to the next or not."""
+        self.drawn = Drawn(x, y, joined)
+        self._path = pg.arrayToQPath(x, y, "all" if joined[:-1].all() else joined, finiteCheck=False)
+        self.update()
+
+    def clear(self) -> None:
+        """Draw nothing."""
+        nothing = np.empty(0)
+        self.draw(nothing, nothing, np.empty(0, np.bool_))
 
     def boundingRect(self) -> QRectF:  # noqa: N802 (Qt's name)
         """Return what the view shows."""
         view = self.getViewBox()
         return QRectF() if view is None else QRectF(view.viewRect())
 
-    def draw(self, x: NDArray[np.float64], y: NDArray[np.float64], joined: NDArray[np.bool_]) -> None:
-        """Draw these points, ``joined`` to the next or not."""
-        self.setData(x, y, connect="all" if joined[:-1].all() else joined)
+    def paint(self, painter: QPainter, option: QStyleOptionGraphicsItem, widget: QWidget | None = None) -> None:
+        """Paint the line."""
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setPen(self.pen)
+        painter.drawPath(self._path)
 
 
 class PlotCanvas(pg.GraphicsView):
