@@ -10,7 +10,8 @@ The tree::
     ├── AlignmentError    NoSensorWorn · PoseMissing · PoseTooShort · MovedDuringHold · HeadingsUnknown
     │                     PoseNotHeld
     ├── TakeFileError     NotATake · Damaged · WrittenByNewerStudio · TakeUnsafe · TruthMissing
-    ├── RecordingError    AlreadyRecording · StoppedEarly · DiskFull · FolderNotWritable · VerificationFailed
+    ├── RecordingError    AlreadyRecording · StoppedEarly · DiskFull · FileAtLimit · FolderNotWritable
+    │                     VerificationFailed
     ├── ImportFailed      RecordingUnreadable · MapFileInvalid · FormatUnknown
     └── ExportError       NothingToExport · CannotWrite · TargetTaken · ReadBackDiffers
 
@@ -241,6 +242,15 @@ class DiskFull(RecordingError):
     folder: str
     kept_s: float
     """s of the recording that are safe on disk (0 when it never started)"""
+
+
+@dataclass(eq=False)
+class FileAtLimit(RecordingError):
+    """The recording is as long as a file on this disk may be (FAT32: 4 GiB)."""
+
+    folder: str
+    kept_s: float
+    """s of the recording that are safe on disk"""
 
 
 @dataclass(eq=False)

@@ -6,6 +6,8 @@ import shutil
 import sys
 from pathlib import Path
 
+from studio.storage.longest_file import longest_file
+
 FILE_MODE = 0o600  # a recording of a person is for its owner
 FOLDER_MODE = 0o700
 
@@ -104,6 +106,10 @@ class FileSystem:
     def free_space(self, folder: Path) -> int:
         """Return how many bytes this user may still write."""
         return shutil.disk_usage(folder).free
+
+    def longest_file(self, folder: Path) -> int:
+        """Return how long a file in this folder may become, bytes."""
+        return longest_file(folder)
 
     def reserve(self, file: Path, size: int) -> None:
         """Make a file that really occupies ``size`` bytes."""

@@ -5,7 +5,7 @@ import errno
 from pathlib import Path
 from typing import NamedTuple
 
-from studio.core.errors import DiskFull, FolderNotWritable, RecordingError
+from studio.core.errors import DiskFull, FileAtLimit, FolderNotWritable, RecordingError
 from studio.storage.blocks import Block
 from studio.storage.encoder import TakeEncoder
 from studio.storage.filesystem import FileSystem
@@ -17,6 +17,7 @@ from studio.storage.verification import verify
 
 BALLAST = 8 << 20  # bytes held back, so that a full disk still takes the last block, the end and take.json
 RESERVE = 64 << 20  # bytes free below which nothing is recorded: the system itself needs room
+END_RESERVE = 64 << 20  # bytes; the whole queue of the take-writer, last words and a closing without index
 NO_ROOM = {errno.ENOSPC, errno.EFBIG, getattr(errno, "EDQUOT", errno.ENOSPC)}
 
 
@@ -50,6 +51,7 @@ class TakeFile:
         self._part = self.folder / PART_FILE
         self._ballast = self.folder / BALLAST_FILE
         self._descriptor = self._begin()
+        self._longest = filesystem.longest_file(self.folder)
 
     def append(self, block: Block) -> None:
         """Write one block. When the disk refuses it, ``failure`` is set and the room kept back takes it."""
@@ -79,9 +81,18 @@ class TakeFile:
         except OSError:
             return RESERVE
 
+    def room(self) -> int:
+        """Return how many bytes can still be added; 0 or less: recording has to stop."""
+        return min(self.free_space() - RESERVE, self._room_in_file())
+
     def stop_for_lack_of_room(self) -> None:
         """Set ``failure`` before the disk refuses."""
+        if self._room_in_file() <= 0:
+            self.failure = self.failure or FileAtLimit(str(self.folder), self.kept())
         self.failure = self.failure or self._failed(OSError(errno.ENOSPC, "less than the reserve"))
+
+    def _room_in_file(self) -> int:
+        return self._longest - self.ledger.size - END_RESERVE
 
     def kept(self) -> float:
         """Return how much of the recording is on disk, s."""
@@ -153,13 +164,16 @@ class TakeFile:
         self._put(words.data)
         self.ledger.add(words)
         # On a full disk the index may be longer than the room kept back; readers do without.
-        indexed = self.failure is None or self.ledger.index_size() < BALLAST // 2
+        room = BALLAST // 2 if self.failure else self._longest - self.ledger.size
+        indexed = self.ledger.index_size() < room
         self._put(self.ledger.closing(self._encoder.channels, indexed=indexed))
         filesystem.sync_whole(self._descriptor)
         filesystem.close_as(self._descriptor, self._part, self.folder / TAKE_FILE)
         filesystem.sync_folder(self.folder)
 
     def _failed(self, error: OSError) -> RecordingError:
+        if error.errno == errno.EFBIG:
+            return FileAtLimit(str(self.folder), self.kept())
         if error.errno in NO_ROOM:
             return DiskFull(str(self.folder), self.kept())
         return FolderNotWritable(str(self.folder))

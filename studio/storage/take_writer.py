@@ -12,7 +12,7 @@ from studio.core.take import Mark, Setup
 from studio.storage.encoder import RawBytes, TakeEncoder
 from studio.storage.facts import Anchor, Event, identity, mark_event
 from studio.storage.filesystem import FILES, FileSystem
-from studio.storage.take_file import RESERVE, Saved, TakeFile
+from studio.storage.take_file import Saved, TakeFile
 
 BLOCK_S = 0.05  # s between writes; half of what the profile allows, so that a busy computer still keeps to it
 SYNC_EVERY = 20  # blocks, 1 s
@@ -203,14 +203,14 @@ class TakeWriter:
 
     def _look_for_room(self) -> None:
         """Compare the room on the disk with this take's own rate: other programs fill disks, too, but not steadily."""
-        free = self._file.free_space()
+        room = self._file.room()
         kept = self._file.kept()
-        if free < RESERVE:
+        if room < 0:
             self._file.stop_for_lack_of_room()
         if kept < _MEASURABLE_S:
             return
         warned = self._seconds_left is not None and self._seconds_left < WARN_S
-        self._seconds_left = max(free - RESERVE, 0) * kept / self._file.ledger.size
+        self._seconds_left = max(room, 0) * kept / self._file.ledger.size
         if self._seconds_left < WARN_S and not warned:
             self.event("disk", {"seconds_left": self._seconds_left}, self._encoder.latest)
 

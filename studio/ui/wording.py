@@ -246,6 +246,12 @@ TEMPLATES = _by_id(
         "Free space, then record the next take.",
     ),
     Message(
+        "rec.file_limit",
+        "Recording stopped: the disk allows no longer file.",
+        "Files on a disk formatted as FAT32 end at 4 GB; {kept_s} of the recording are safe in {folder}.",
+        "Record the next take, or keep the library on a disk with another format (exFAT, NTFS, APFS).",
+    ),
+    Message(
         "rec.folder",
         "Recordings cannot be kept in {folder}.",
         "The studio has no right to write there.",
@@ -359,6 +365,7 @@ MESSAGE_OF: dict[type[StudioError], str | Callable[[Any], str]] = {
     errors.AlreadyRecording: "rec.running",
     errors.StoppedEarly: "rec.early",
     errors.DiskFull: lambda error: "rec.disk_full" if error.kept_s > 0 else "rec.no_room",
+    errors.FileAtLimit: "rec.file_limit",
     errors.FolderNotWritable: "rec.folder",
     errors.VerificationFailed: "rec.verify_fail",
     errors.NotATake: "open.not_take",

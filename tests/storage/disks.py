@@ -50,6 +50,28 @@ class StallingDisk(FileSystem):
         super().write(descriptor, data)
 
 
+class ShortFiles(FileSystem):
+    """Allows files of so many bytes, as FAT32 does."""
+
+    def __init__(self, longest: int) -> None:
+        self.longest = longest
+        self._sizes: dict[int, int] = {}
+
+    def longest_file(self, folder: Path) -> int:
+        return self.longest
+
+    def write(self, descriptor: int, data: bytes) -> None:
+        size = self._sizes.get(descriptor, 0) + len(data)
+        if size > self.longest:
+            raise OSError(errno.EFBIG, "too long")
+        super().write(descriptor, data)
+        self._sizes[descriptor] = size
+
+    def close(self, descriptor: int) -> None:
+        self._sizes.pop(descriptor, None)
+        super().close(descriptor)
+
+
 class SmallDisk(FileSystem):
     """Tells how much room is left; each look takes the next number, the last one stays."""
 

@@ -9,15 +9,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from mcap.reader import make_reader
 
-from studio.core.errors import DiskFull, FolderNotWritable, RecordingError
+from studio.core.errors import DiskFull, FileAtLimit, FolderNotWritable, RecordingError
 from studio.storage.encoder import TakeEncoder
 from studio.storage.facts import Anchor, identity
-from studio.storage.take_file import BALLAST, RESERVE, TakeFile
+from studio.storage.longest_file import NO_LIMIT, kind_of_mount, longest_file
+from studio.storage.take_file import BALLAST, END_RESERVE, RESERVE, TakeFile
 from studio.storage.take_reader import read_events, read_take
 from studio.storage.take_store import write_take
 from studio.storage.take_writer import WARN_S
-from tests.storage.disks import FullDisk, SmallDisk
+from tests.storage.disks import FullDisk, ShortFiles, SmallDisk
 from tests.storage.recordings import DAY, SETUP, START, TAGS, sample, samples, start_writing
 
 SECONDS = 30
@@ -167,6 +169,79 @@ def test_the_operator_is_warned_ten_minutes_before_the_disk_is_full(tmp_path: Pa
     assert 60 < left < WARN_S
     assert [event.kind for event in read_events(folder)].count("disk") == 1
     assert writer.failure is None
+
+
+def test_recording_stops_in_order_before_its_file_is_as_long_as_the_disk_allows(tmp_path: Path) -> None:
+    writer = start_writing(tmp_path, ShortFiles(END_RESERVE + 100_000))
+    for one in samples(100):  # 270 kB
+        writer.sample(one)
+    wait_until(lambda: writer.failure is not None)
+
+    saved = writer.stop().result(SECONDS)
+
+    assert isinstance(writer.failure, FileAtLimit)
+    assert writer.failure.kept_s == pytest.approx(0.99, abs=0.01)
+    assert read_take(saved.folder)[1].finished
+    with (saved.folder / "take.mcap").open("rb") as file:
+        summary = make_reader(file).get_summary()
+    assert summary is not None
+    assert summary.chunk_indexes
+
+
+def test_the_operator_is_warned_ten_minutes_before_the_file_is_as_long_as_the_disk_allows(tmp_path: Path) -> None:
+    writer = start_writing(tmp_path, ShortFiles(END_RESERVE + (10 << 20)), tags=1)
+    for frame in range(200):
+        writer.sample(sample(TAGS[0], frame))
+    wait_until(lambda: writer.seconds_left is not None)
+    left = writer.seconds_left
+    folder = writer.stop().result(SECONDS).folder
+
+    assert left is not None
+    assert 60 < left < WARN_S
+    assert [event.kind for event in read_events(folder)].count("disk") == 1
+
+
+def test_a_file_gets_its_end_where_its_index_is_too_long_for_the_disk(tmp_path: Path) -> None:
+    def written(longest: int) -> TakeFile:
+        encoder = TakeEncoder(identity("walk", "P014", "", SETUP, {}, Anchor("", START)))
+        file = TakeFile(tmp_path, "walk", encoder, ShortFiles(longest))
+        for block in encoder.blocks(samples(8), [], []):
+            file.append(block)
+        return file
+
+    size = written(1 << 30).ledger.size
+
+    folder = written(size + 20_000).finish().folder  # last words and an end fit in, 64 kB kept for an index do not
+
+    assert read_take(folder)[1].finished
+    with (folder / "take.mcap").open("rb") as stream:
+        summary = make_reader(stream).get_summary()
+    assert summary is not None
+    assert summary.chunk_indexes == []
+
+
+def test_an_imported_take_too_long_for_the_disk_is_said_to_be_that(tmp_path: Path) -> None:
+    take, _ = read_take(start_and_stop(tmp_path))
+
+    with pytest.raises(FileAtLimit):
+        write_take(take, tmp_path, DAY, filesystem=ShortFiles(8000))
+
+
+MOUNTS = """\
+24 1 8:2 / / rw,relatime shared:1 - ext4 /dev/sda2 rw
+31 24 8:17 / /media/a\\040stick rw,nosuid shared:9 - vfat /dev/sdb1 rw,fmask=0022
+32 24 0:30 / /proc rw
+"""
+
+
+@pytest.mark.parametrize(("major", "minor", "kind"), [(8, 2, "ext4"), (8, 17, "vfat"), (0, 30, ""), (8, 1, "")])
+def test_a_stick_with_fat32_is_known_by_its_mount(major: int, minor: int, kind: str) -> None:
+    assert kind_of_mount(MOUNTS, major, minor) == kind
+
+
+def test_most_disks_allow_files_of_any_length(tmp_path: Path) -> None:
+    assert longest_file(tmp_path) == NO_LIMIT
+    assert longest_file(tmp_path / "missing") == NO_LIMIT
 
 
 def test_recording_stops_in_order_before_the_system_runs_out_of_room(tmp_path: Path) -> None:
