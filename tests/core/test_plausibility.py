@@ -14,6 +14,7 @@ from tests.core.worn_sensors import BOW_HOLD, N_HOLD, RATE, procedure, sensor_of
 
 EXCHANGED = (replace(N_HOLD, label="bow"), replace(BOW_HOLD, label="n"))
 SECONDS = 20.0
+LIFTED_ARMS = ("arm", "hand")
 TIME = np.arange(round(SECONDS * RATE) + 1) / RATE
 
 
@@ -52,6 +53,20 @@ def test_a_t_pose_called_bow_is_refused_because_no_trunk_bows_without_tilting():
 
     assert (refusal.value.pose, refusal.value.held) == ("bow", "t")
     assert set(refusal.value.places) == {place.value for place in PRESETS["upper"][2:]}
+
+
+def test_arms_may_be_raised_high_while_the_trunk_bows():
+    """The arms of a bow are held forwards, by some to the level: it is the trunk that tells a bow."""
+    high = {
+        place: rotation.multiply(
+            procedure(place, TIME),
+            rotation.about(2, np.radians(35) * ((TIME > 5.9) & (TIME < 8.1)) * place.value.endswith(LIFTED_ARMS)),
+        )
+        for place in PLACES
+    }
+    take, _ = worn_take(PLACES, SECONDS, motion=high)
+
+    assert solve(take).motion.alignment.limbs[Place.LEFT_HAND].source == "bow"
 
 
 def test_arms_alone_may_bow_as_they_like():

@@ -45,6 +45,20 @@ def test_after_a_silence_in_the_middle_of_a_swing_the_angles_are_right_at_once(m
     assert errors.max() < 1.5
 
 
+def test_an_offset_is_taken_out_of_all_of_a_silence():
+    """0.37 °/s over five seconds are 1.9 degrees of heading."""
+    time = np.arange(1500) / RATE
+    still = np.tile(mounted(np.random.default_rng(6)), (len(time), 1))
+    sent = stream(sensor_of(THIGH), still, time, bias=(0.0, 0.0065, 0.0))
+    take, _ = worn_take((THIGH,))
+    alone = replace(take, streams=(kept(sent, (time < 12.0) | (time >= 17.0)),))
+
+    track = solve_tracks(alone, SolveOptions(attitude="gyro"))[sensor_of(THIGH)]
+
+    assert set(track.group) == {0}
+    assert np.degrees(rotation.angle_between(track.attitude[0], track.attitude)).max() < 0.2
+
+
 def told(take, truth, place, info, **changes):
     """Return the take with another kind of sensor on a place, strapped on as the pictures show."""
     world_from_sensor = rotation.multiply(truth[place], rotation.inverse(strap_rule()[place]))

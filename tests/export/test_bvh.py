@@ -231,6 +231,26 @@ class TestReadingBack:
             self.check(tmp_path, moving_body(50), change=change)
 
 
+@pytest.mark.parametrize("fps", [None, 60])
+def test_a_live_motion_keeps_its_time_although_its_rows_are_uneven(tmp_path, fps):
+    """Frames of a live motion come when sensors sent; those that never came leave time and no rows."""
+    even = moving_body(frames=301)
+    rows = np.setdiff1d(np.arange(301), [*range(40, 60), 100, 101, 250])
+    rng = np.random.default_rng(3)
+    late = np.sort(np.concatenate([[0.0, 6.0], even.time[rows[1:-1]] + rng.uniform(-4e-3, 4e-3, len(rows) - 2)]))
+    walked = np.outer(late, [1.0, 2.0, 0.0]) + even.hips[0]
+    uneven = replace(even, time=late, world_from_segment=even.world_from_segment[rows], hips=walked)
+
+    written = read_bvh(exported(tmp_path, uneven, fps=fps))
+
+    step = 1 / (fps or 50)
+    assert written.frame_time == pytest.approx(step)
+    assert len(written.values) == round(6.0 / step) + 1
+    forward = written.values[:, 2]  # of the file: world x
+    assert np.ptp(np.diff(forward)) < 1e-6  # who walks evenly does so in the file
+    assert forward[-1] - forward[0] == pytest.approx(6.0, abs=1e-6)
+
+
 def test_the_last_frame_of_a_resampled_motion_is_within_it():
     motion = moving_body(1000)
 
