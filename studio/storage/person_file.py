@@ -9,6 +9,7 @@ from studio.core.errors import FolderNotWritable, WrittenByNewerStudio
 from studio.core.take import Assignment, Mounting
 from studio.storage import documents
 from studio.storage.filesystem import FOLDER_MODE
+from studio.storage.limits import STATURES
 from studio.storage.names import person_folder
 
 PERSON_JSON: Final = "person.json"
@@ -35,6 +36,8 @@ def load_person(library: Path, code: str) -> Person:
     """
     file = library / person_folder(code) / PERSON_JSON
     person, state = documents.load(file, Person, SCHEMA)
+    if person is not None and person.stature is not None and not STATURES[0] <= person.stature <= STATURES[1]:
+        person, state = None, "damaged"
     if state == "newer":
         raise WrittenByNewerStudio(str(file), "person.json", f"schema {SCHEMA}")
     if state == "damaged":

@@ -12,6 +12,7 @@ from studio.core.sample import SensorId
 from studio.core.take import Calibration
 from studio.storage import documents
 from studio.storage.filesystem import FOLDER_MODE
+from studio.storage.limits import is_plausible_correction
 from studio.storage.names import slug
 
 SCHEMA: Final = 1
@@ -49,6 +50,8 @@ def load_tag(sensor: SensorId, folder: Path) -> Tag:
     """
     file = _file(sensor, folder)
     tag, state = documents.load(file, Tag, SCHEMA)
+    if tag is not None and not _are_plausible(tag.calibrations):
+        tag, state = None, "damaged"
     if state == "newer":
         raise WrittenByNewerStudio(str(file), "tag", f"schema {SCHEMA}")
     if state == "damaged":
@@ -106,6 +109,8 @@ def read_calibration(file: Path) -> tuple[Calibration, ...]:
     if document is None:
         reasons = {"missing": "there is no such file", "newer": "it was written by a newer studio"}
         raise CalibrationUnreadable(str(file), reasons.get(state, "it holds no calibrations"))
+    if not _are_plausible(document.calibrations):
+        raise CalibrationUnreadable(str(file), "it holds a gain or an offset that no gyroscope has")
     return document.calibrations
 
 
@@ -120,6 +125,10 @@ def write_calibration(file: Path, calibrations: tuple[Calibration, ...]) -> None
         documents.save(file, CalibrationDocument(SCHEMA, calibrations))
     except OSError as error:
         raise FolderNotWritable(str(file.parent)) from error
+
+
+def _are_plausible(calibrations: tuple[Calibration, ...]) -> bool:
+    return all(is_plausible_correction(calibration.correction) for calibration in calibrations)
 
 
 def _file(sensor: SensorId, folder: Path) -> Path:

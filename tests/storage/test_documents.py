@@ -179,6 +179,32 @@ def test_a_tag_keeps_its_calibrations_newest_first(tmp_path: Path) -> None:
     assert repr(read_calibration(tmp_path / "00000000.json")) == repr(tag.calibrations)
 
 
+@pytest.mark.parametrize(
+    "correction",
+    [
+        Correction((0.0, 0.0, 0.0), ((0.0, 0.0, 0.0),) * 3),
+        Correction((0.0, 0.0, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1e6))),
+        Correction((1e6, 0.0, 0.0), CALIBRATION.correction.gain),
+    ],
+)
+def test_a_calibration_no_gyroscope_needs_is_not_taken(tmp_path: Path, correction: Correction) -> None:
+    file = tmp_path / "00000000.json"
+    write_calibration(file, (replace(CALIBRATION, correction=correction),))
+
+    with pytest.raises(CalibrationUnreadable, match="gain"):
+        read_calibration(file)
+    assert load_tag(TAGS[0], tmp_path) == Tag()
+    assert (tmp_path / "00000000.json.bad").exists()
+
+
+@pytest.mark.parametrize("stature", [-1.0, 0.0, 99.0])
+def test_a_stature_nobody_has_counts_as_damage(tmp_path: Path, stature: float) -> None:
+    save_person(tmp_path, "P014", Person(stature=stature))
+
+    assert load_person(tmp_path, "P014") == Person()
+    assert (tmp_path / "P014" / "person.json.bad").exists()
+
+
 def test_a_calibration_file_keeps_every_digit(tmp_path: Path) -> None:
     file = tmp_path / "calibration.json"
     write_calibration(file, (CALIBRATION,))
