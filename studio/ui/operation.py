@@ -1,7 +1,7 @@
 """Something that was asked for and is under way elsewhere: looked at on every tick, never waited for."""
 
 from collections.abc import Callable
-from concurrent.futures import Future
+from concurrent.futures import Future, wait
 from queue import Empty, SimpleQueue
 from typing import Any
 
@@ -33,6 +33,11 @@ class Operation(QObject):
     def is_running(self) -> bool:
         """Whether there is still an answer to come."""
         return self._future is not None
+
+    def wait(self, timeout: float) -> None:
+        """Wait for the end, at most ``timeout`` s; ``poll`` tells what came of it."""
+        if self._future is not None:
+            wait((self._future,), timeout)
 
     def poll(self) -> None:
         """Tell what has happened since the last time; our own mistakes are raised here."""

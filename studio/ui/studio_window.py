@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Protocol
 
 from PySide6.QtCore import QObject
-from PySide6.QtWidgets import QApplication
+from PySide6.QtWidgets import QApplication, QWidget
 
 from studio.core.body import Place
 from studio.export.file_target import is_taken
@@ -129,6 +129,7 @@ class StudioWindow(QObject):
     def shut_down(self) -> None:
         """Stop everything in order; what is being recorded is saved first."""
         self.tick.stop()
+        self.review_page.measures.keep_note()
         self.settings.set("geometry", self.window.geometry_state())
         self.settings.set("last_source", self.model.source)
         self.settings.flush()
@@ -199,6 +200,7 @@ class StudioWindow(QObject):
         window.vocabulary_changed.connect(self._on_vocabulary)
         window.close_requested.connect(self._on_close)
         window.close_confirmed.connect(self._on_close_confirmed)
+        recorder.phase_changed.connect(self._on_phase)
         recorder.close_asked.connect(window.ask_before_close)
         recorder.close_ready.connect(window.close_now)
         model.refused.connect(self.notices.refuse)
@@ -289,6 +291,19 @@ class StudioWindow(QObject):
             self.assign_page.set_words(words)
             self.calibration_page.set_words(words)
             self.connect_page.set_place_words(self._names)
+
+    def _on_phase(self, _: object) -> None:
+        """While a take is being recorded, what would change whose it is or what is in it waits."""
+        may = not self.recorder.is_busy
+        reason = "" if may else self.tr("A take is being recorded: this can be changed after it.")
+        parts: tuple[QWidget, ...] = (
+            self.window.header.person, self.connect_page.choice, self.assign_page,
+            self.settings_page.choose_library,
+        )  # fmt: skip
+        for part in parts:
+            part.setEnabled(may)
+            part.setToolTip(reason)
+        self.assign.is_allowed = may
 
     def _on_close(self) -> None:
         if self.recorder.close(self.model.now()):

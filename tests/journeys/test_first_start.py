@@ -6,6 +6,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QPushButton
 
 from studio.importers.bvh import read_bvh
+from studio.storage.take_summary import summarise
 from studio.ui.models.recorder import Phase
 from tests.ui.running_studio import running_studio
 
@@ -126,3 +127,33 @@ def test_the_sample_take_opens_by_one_click(qtbot, tmp_path):
         click(studio.home_page.sample)
         qtbot.waitUntil(lambda: studio.window.shown_page == "review", timeout=SLOW)
         assert studio.review_page.takes.model.total == 1, "imported twice"
+
+
+def test_while_recording_person_source_and_places_wait(qtbot, tmp_path):
+    with running_studio(tmp_path) as studio:
+        qtbot.waitUntil(lambda: has_body(studio), timeout=SLOW)
+        click(studio.window.strip.record)
+        qtbot.waitUntil(lambda: studio.recorder.phase is Phase.RECORDING, timeout=SLOW)
+        waiting = (studio.window.header.person, studio.connect_page.choice, studio.assign_page)
+        assert not any(part.isEnabled() for part in waiting)
+        assert all("after it" in part.toolTip() for part in waiting)
+        qtbot.wait(600)
+        click(studio.window.strip.record)
+        qtbot.waitUntil(lambda: studio.review_page.takes.model.total == 1, timeout=SLOW)
+        assert all(part.isEnabled() for part in waiting)
+
+
+def test_a_note_that_is_being_written_when_the_window_closes_is_kept(qtbot, tmp_path):
+    with running_studio(tmp_path) as studio:
+        qtbot.waitUntil(lambda: has_body(studio), timeout=SLOW)
+        click(studio.window.strip.record)
+        qtbot.waitUntil(lambda: studio.recorder.phase is Phase.RECORDING, timeout=SLOW)
+        qtbot.wait(600)
+        click(studio.window.strip.record)
+        qtbot.waitUntil(lambda: studio.review_page.takes.model.total == 1, timeout=SLOW)
+        folder = studio.review_page.takes.model.newest()[0].folder
+        studio.review_take(folder)
+        qtbot.waitUntil(lambda: studio.review_page.measures.note.isEnabled(), timeout=SLOW)
+        studio.review_page.measures.note.setFocus()
+        QTest.keyClicks(studio.review_page.measures.note, "pain on stairs")
+    assert summarise(folder).notes == "pain on stairs"

@@ -28,6 +28,8 @@ class AssignPresenter(QObject):
         super().__init__(page)
         self._model, self._assignment, self._page, self._settings = model, assignment, page, settings
         self._at = -math.inf
+        self.is_allowed = True
+        """Whether places may be changed now."""
         assignment.assignment_changed.connect(model.assign)
         page.stature_chosen.connect(model.set_stature)
         page.map.facing_changed.connect(self._on_facing)
@@ -38,6 +40,8 @@ class AssignPresenter(QObject):
 
     def act(self, action: str) -> bool:
         """Do what a key asks for."""
+        if not self.is_allowed:
+            return False
         if action == "undo":
             self._assignment.undo()
         elif action == "redo":
