@@ -29,7 +29,7 @@ from studio.capture.setups import setup_for
 from studio.capture.sources import open_source
 from studio.capture.worker import Worker
 from studio.core.body import Place
-from studio.core.errors import FolderNotWritable, StudioError, WrittenByNewerStudio
+from studio.core.errors import RecordingError, StudioError, WrittenByNewerStudio
 from studio.core.rest import Rest
 from studio.core.sample import NO_CORRECTION, Correction, SensorId, SensorInfo
 from studio.core.take import Alignment, Assignment, Calibration, Mark, Setup
@@ -41,6 +41,7 @@ T = TypeVar("T")
 
 HEALTH_EVERY = 0.25  # s
 FLAGS_SECONDS = 1.0  # s
+LAST_WORDS = 5.0  # s; a note or a name is on the disk within milliseconds, unless the disk is asleep
 
 
 class StudioModel(QObject):
@@ -92,6 +93,7 @@ class StudioModel(QObject):
         self._operations: list[Operation] = []
         self._health_at = -math.inf
         self._knows_body = False
+        self._is_closed = False
         self.heard_at = -math.inf
         """s, clock of ``now``: when a sample of any sensor last came in."""
         self._received = 0
@@ -214,7 +216,10 @@ class StudioModel(QObject):
             self._ask(self._look(), self._looked)
 
     def shut_down(self) -> None:
-        """Stop everything in order; a recording is closed and read back first."""
+        """Stop everything in order: what was asked for is done, a recording is closed and read back first."""
+        self._is_closed = True
+        for operation in self._operations:
+            operation.wait(LAST_WORDS)
         if self._session.recording is not None:
             self._runtime.call(self._session.stop_recording()).result()
         self._runtime.call(self._session.disconnect()).result()
@@ -227,6 +232,9 @@ class StudioModel(QObject):
         done: Callable[[T], None],
         refused: Callable[[StudioError], None] | None = None,
     ) -> None:
+        if self._is_closed:
+            coroutine.close()
+            return
         operation = Operation(self)
         operation.done.connect(done)
         operation.refused.connect(refused or self.refused.emit)
@@ -265,7 +273,7 @@ class StudioModel(QObject):
             save_person(
                 self.library, self.person, Person(stature=stature, assignment=setup.assignment, mounting=setup.mounting)
             )
-        except (FolderNotWritable, WrittenByNewerStudio):
+        except (RecordingError, WrittenByNewerStudio):
             return
 
     async def _hold(self, pose: Mark, only: Collection[Place]) -> Judged:
