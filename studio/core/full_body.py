@@ -21,6 +21,7 @@ class FullBody:
     """The rules for one set of measured places, prepared once and applied to any number of poses."""
 
     def __init__(self, places: Sequence[Place], pose: str) -> None:
+        """Prepare for sensors on ``places``, in this order, aligned in the reference pose called ``pose``."""
         reference = reference_pose(pose)
         self._segments = [int(SEGMENT_OF[place]) for place in places]
         measured = [segment in self._segments for segment in range(SEGMENTS)]

@@ -55,6 +55,7 @@ class FrameLog:
     """Frames in the order in which they came, 42 bytes a sensor."""
 
     def __init__(self, sensors: Iterable[SensorId]) -> None:
+        """Begin without frames; ``sensors`` gives the order of the columns."""
         self._sensors = tuple(sensors)
         self._values = array("d")
         self._groups = array("h")
@@ -86,6 +87,7 @@ class Rows:
     """Rows of numbers that come one by one, the first of them a time, and are read as one array."""
 
     def __init__(self, width: int) -> None:
+        """Begin without rows of ``width`` numbers."""
         self._width = width
         self._old: NDArray[np.float64] = np.empty((0, width))
         self._new = array("d")

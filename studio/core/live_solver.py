@@ -39,6 +39,14 @@ class Solver:
     def __init__(
         self, setup: Setup, attitude: str, calibrations: Mapping[SensorId, Calibration], keep_s: float = float("inf")
     ) -> None:
+        """Begin without any sensor.
+
+        Parameters
+        ----------
+        attitude : key of ``attitude.ESTIMATORS``
+        calibrations : offset and gain to be in force, of the sensors that have one
+        keep_s : s, how far back attitudes are kept for holds
+        """
         self._setup = setup
         self._attitude = attitude
         self._calibrations = dict(calibrations)

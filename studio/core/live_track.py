@@ -30,6 +30,13 @@ class LiveTrack:
     """Steps an estimator through the samples of one sensor as they arrive, bridging gaps."""
 
     def __init__(self, info: SensorInfo, wanted: str, calibration: Calibration | None) -> None:
+        """Begin before the first sample.
+
+        Parameters
+        ----------
+        wanted : key of ``attitude.ESTIMATORS``; a sensor that cannot serve it uses what it can
+        calibration : offset and gain to be in force; None leaves what the sensor itself applied
+        """
         self.info = info
         self.estimator = estimator_for(info, wanted)
         self.attitude: Quaternion = single.IDENTITY

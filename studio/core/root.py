@@ -30,6 +30,7 @@ class Root:
     """Hips position frame by frame; the same steps live and offline."""
 
     def __init__(self, skeleton: Skeleton) -> None:
+        """Begin over the world's origin, with the left foot as the supporting one."""
         self._skeleton = skeleton
         self._hips = (0.0, 0.0)
         self._foot = 0

@@ -103,6 +103,13 @@ class SharedClock:
     """One wrapping clock that several sensors are synchronised to, e.g. their receiver's."""
 
     def __init__(self, modulus: int, tick: float) -> None:
+        """Begin before anything was heard.
+
+        Parameters
+        ----------
+        modulus : ticks after which the clock, as sent, starts at 0 again
+        tick : s
+        """
         self._modulus = modulus
         self._tick = tick  # s
         self._ticks: int | None = None

@@ -10,6 +10,13 @@ class DeviceOrientation:
     """A filter on the device (x-IMU3, DOT, BNO055, DMP) is taken at its word."""
 
     def __init__(self, frame_s: float, offset_sigma: float) -> None:
+        """Begin before the first frame.
+
+        Parameters
+        ----------
+        frame_s : s, from one step to the next
+        offset_sigma : rad/s, standard uncertainty of what is left of the gyroscope's offset; the device has its own
+        """
         self._last = np.array([1.0, 0.0, 0.0, 0.0])
 
     def step(

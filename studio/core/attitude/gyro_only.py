@@ -17,6 +17,13 @@ class GyroOnly:
     """Integrated turning; the accelerometer serves once, to level the start frame at rest (contracts §4)."""
 
     def __init__(self, frame_s: float, offset_sigma: float) -> None:
+        """Begin before the first frame.
+
+        Parameters
+        ----------
+        frame_s : s, from one step to the next
+        offset_sigma : rad/s, standard uncertainty of what is left of the gyroscope's offset; nothing here corrects it
+        """
         self._frame_s = frame_s
         self._start_from_sensor = rotation.IDENTITY
         self._level_frames = math.ceil(LEVEL_TIME / frame_s)

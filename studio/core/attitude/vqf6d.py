@@ -23,6 +23,13 @@ class Vqf6D:
     """Gyroscope and accelerometer; tilt bounded by gravity, heading only by the offset's quality."""
 
     def __init__(self, frame_s: float, offset_sigma: float) -> None:
+        """Begin before the first frame.
+
+        Parameters
+        ----------
+        frame_s : s, from one step to the next
+        offset_sigma : rad/s, standard uncertainty of what is left of the gyroscope's offset
+        """
         self._frame_s = frame_s
         self._sigma = max(math.degrees(offset_sigma), SMALLEST_SIGMA)
         self._filter = self._fresh()
