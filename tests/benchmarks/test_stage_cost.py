@@ -2,13 +2,14 @@
 
 import statistics
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from PySide6.QtCore import QLineF, Qt
 from PySide6.QtGui import QColor, QImage, QPainter, QPen
 
-from studio.core.body import PARENTS, SEGMENTS
+from studio.core.body import PARENTS, SEGMENTS, Segment
 from studio.ui.views.stage.side_letters import Letters
 from tests.ui.stage_poses import FRAME, SKELETON, stage, walking
 
@@ -46,6 +47,25 @@ def test_cost_of_a_frame(qtbot):
         + ", ".join(f"{name} {1e3 * cost:.2f}" for name, cost in share.items())
     )
     assert ratio < PLAIN
+
+
+def test_cost_of_a_frame_while_the_camera_stands(qtbot):
+    """The same steps on one spot: the floor is seen again in each frame."""
+    widget = stage(qtbot, size=(WIDTH, HEIGHT))
+    widget.follow = False
+    image = QImage(WIDTH, HEIGHT, QImage.Format.Format_RGB32)
+    costs = []
+    for frame, pose in enumerate(walking(SECONDS)):
+        widget.show_pose(replace(pose, joints=pose.joints - pose.joints[Segment.Hips] * (1.0, 1.0, 0.0)))
+        seen = widget.camera
+        before = time.process_time()
+        widget.tick(frame * FRAME)
+        widget.render(image)
+        costs.append(time.process_time() - before)
+        assert widget.camera == seen
+
+    median, fastest = statistics.median(costs), np.percentile(costs, 10)
+    print(f"\n{WIDTH} x {HEIGHT}, camera stands: {1e3 * median:.2f} ms a frame (best tenth {1e3 * fastest:.2f})")
 
 
 def _lines(image, camera, joints):
