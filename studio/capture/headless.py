@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from studio.capture.live_session import LiveSession
 from studio.capture.setups import setup_for, with_stature
 from studio.capture.sources import open_source
-from studio.core.errors import FolderNotWritable, NoData, StoppedEarly, StudioError, WrittenByNewerStudio
+from studio.core.errors import NoData, RecordingError, StoppedEarly, StudioError, WrittenByNewerStudio
 from studio.core.take import Setup
 from studio.storage.person_file import Person, load_person, save_person
 from studio.storage.take_file import Saved
@@ -106,5 +106,5 @@ def _remember(request: RecordRequest, session: LiveSession, person: Person) -> N
     worn = Person(stature=person.stature, assignment=session.setup.assignment, mounting=session.setup.mounting)
     try:
         save_person(request.library, request.person, worn)
-    except (FolderNotWritable, WrittenByNewerStudio):
+    except (RecordingError, WrittenByNewerStudio):
         return

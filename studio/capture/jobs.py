@@ -15,6 +15,7 @@ from studio.export.file_target import check_target
 from studio.export.material import Material, Wish
 from studio.export.registry import export_file
 from studio.export.sidecar import digest_of
+from studio.export.stand_ins import stand_ins
 from studio.importers.bvh import read_bvh
 from studio.storage.motion_file import load_motion, motion_key, save_motion
 from studio.storage.tag_file import load_tag, read_calibration, tags_folder
@@ -123,7 +124,8 @@ def run_export(request: ExportRequest, progress: Progress) -> tuple[Path, tuple[
         if motion is None:
             motion = solve(loaded.take, loaded.options).motion
             keep(request.solve.take, loaded.key, motion)
-        motion = replace(motion, notes=(*motion.notes, *loaded.notes))
+        stood_in = stand_ins(motion) if request.exporter == "bvh" else ()
+        motion = replace(motion, notes=(*motion.notes, *loaded.notes, *stood_in))
     if request.exporter == "orientations":
         tracks = solve_tracks(loaded.take, loaded.options)
         orientations = {sensor: (track.time, track.attitude) for sensor, track in tracks.items()}

@@ -40,6 +40,7 @@ class LinkIntake:
         self.dialects = link.dialects if isinstance(link, Bundle) else {link.name: link.dialect}
         self.infos: dict[SensorId, SensorInfo] = {}
         self._asked: dict[SensorId, tuple[int, float]] = {}
+        self._arrivals = 0
         self._branches = {name: _Branch(name, dialect) for name, dialect in self.dialects.items() if dialect}
 
     def samples(self, piece: Arrival | Known) -> Iterator[Sample]:
@@ -48,6 +49,7 @@ class LinkIntake:
             self.infos[piece.info.sensor] = piece.info
             yield piece.sample
             return
+        self._arrivals += 1
         branch = self._branches.get(self.name_of(piece))
         if branch is None:
             raise ValueError(f"link {self.name_of(piece)} sends bytes but names no dialect")
@@ -100,5 +102,7 @@ class LinkIntake:
         return next((version for version in versions if version is not None), None)
 
     def malformed(self) -> int:
-        """Return how many pieces made no sense."""
-        return sum(sum(branch.dialect.malformed.values()) for branch in self._branches.values())
+        """Return how many pieces made no sense: all of them as long as no sensor was heard."""
+        # What has not even the look of a message, such as the words of some other device, no dialect counts.
+        counted = sum(sum(branch.dialect.malformed.values()) for branch in self._branches.values())
+        return counted if self.infos else max(counted, self._arrivals)

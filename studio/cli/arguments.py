@@ -4,13 +4,15 @@ import argparse
 import math
 import re
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import studio
-from studio.cli import record_verb, verbs
+from studio.cli import help_texts, record_verb, verbs
+from studio.cli.help_texts import COMMAND
 from studio.core.attitude import ESTIMATORS
 from studio.core.take import Mark, PoseName
-from studio.export.bvh import DEFAULT_RATE, RATES
+from studio.export.bvh import DEFAULT_RATE, RATES, rate_name
 from studio.export.bvh import PRESETS as BVH_PRESETS
 from studio.export.csv_tables import PRESETS as CSV_PRESETS
 from studio.importers.registry import IMPORTERS
@@ -21,19 +23,20 @@ _POSE = re.compile(r"(?P<name>[a-z]+)=(?P<first>[0-9.]+)\.\.(?P<last>[0-9.]+)")
 SHORTEST, TALLEST = 0.3, 2.8  # m; as in the map of a table (resources/map.schema.json)
 LOWEST_CM = 30.0  # a stature from here on is meant in cm
 
-SOURCES = """\
-A SOURCE is one of
-  synthetic[:SCRIPT][?tags=15&loss=0.05&seed=1&calibrated=1&speed=max]   a simulated performer
-  serial:PORT[@BAUD]                                                     a receiver on a cable
-  replay:TAKE[?speed=2]                                                  a take, played again
-"""
-
 
 def parser() -> argparse.ArgumentParser:
     """Return the parser of the whole command line."""
-    top = argparse.ArgumentParser(prog="studio", description="Kinetag Studio: motion capture with body-worn sensors.")
+    top = argparse.ArgumentParser(
+        prog=COMMAND,
+        description="Kinetag Studio: motion capture with body-worn sensors.",
+        epilog=help_texts.TOP,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
     top.add_argument("--version", action="version", version=f"Kinetag Studio {studio.__version__}")
-    add = top.add_subparsers(dest="verb", metavar="VERB", title="verbs").add_parser
+    add = partial(
+        top.add_subparsers(dest="verb", metavar="VERB", title="verbs").add_parser,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
     _devices(add)
     _record(add)
     _import(add)
@@ -47,18 +50,13 @@ AddVerb = Callable[..., argparse.ArgumentParser]
 
 
 def _devices(add: AddVerb) -> None:
-    verb = add("devices", help="list the sources that can be opened now")
+    verb = add("devices", help="list the sources that can be opened now", epilog=help_texts.DEVICES)
     verb.add_argument("--json", action="store_true", help="for programs")
     verb.set_defaults(run=verbs.devices)
 
 
 def _record(add: AddVerb) -> None:
-    verb = add(
-        "record",
-        help="record a take and print its folder",
-        epilog=SOURCES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+    verb = add("record", help="record a take and print its folder", epilog=help_texts.RECORD)
     verb.add_argument("--source", required=True, metavar="SOURCE")
     verb.add_argument("--seconds", type=_seconds, default=math.inf, help="how long (default: until Ctrl+C)")
     verb.add_argument("--library", type=Path, required=True, metavar="DIR")
@@ -69,7 +67,7 @@ def _record(add: AddVerb) -> None:
 
 
 def _import(add: AddVerb) -> None:
-    verb = add("import", help="turn a foreign recording into a take and print its folder")
+    verb = add("import", help="turn a foreign recording into a take and print its folder", epilog=help_texts.IMPORT)
     verb.add_argument("paths", type=Path, nargs="+", metavar="PATH")
     verb.add_argument("--format", choices=("auto", *IMPORTERS), default="auto")
     verb.add_argument("--map", type=Path, metavar="FILE", help="what the columns of a table mean (csv)")
@@ -80,7 +78,7 @@ def _import(add: AddVerb) -> None:
 
 
 def _inspect(add: AddVerb) -> None:
-    verb = add("inspect", help="show what became of each sensor's samples")
+    verb = add("inspect", help="show what became of each sensor's samples", epilog=help_texts.INSPECT)
     verb.add_argument("take", type=Path, metavar="TAKE")
     verb.add_argument("--json", action="store_true", help="for programs")
     verb.add_argument("--truth", action="store_true", help="compare with the true motion of a synthetic take")
@@ -88,14 +86,18 @@ def _inspect(add: AddVerb) -> None:
 
 
 def _solve(add: AddVerb) -> None:
-    verb = add("solve", help="compute the motion of a take and show how it was found")
+    verb = add("solve", help="compute the motion of a take and show how it was found", epilog=help_texts.SOLVE)
     verb.add_argument("take", type=Path, metavar="TAKE")
     _add_solving(verb)
     verb.set_defaults(run=verbs.solve)
 
 
 def _export(add: AddVerb) -> None:
-    verb = add("export", help="write a file for another program; it is read back before it is called done")
+    verb = add(
+        "export",
+        help="write a file for another program; it is read back before it is called done",
+        epilog=help_texts.EXPORT,
+    )
     verb.add_argument("take", type=Path, metavar="TAKE")
     verb.add_argument("--format", choices=("bvh", "csv"), required=True)
     verb.add_argument("--table", choices=("joints", "orientations", "raw"), help="of csv (default: joints)")
@@ -104,8 +106,8 @@ def _export(add: AddVerb) -> None:
     verb.add_argument(
         "--fps",
         type=_fps,
-        default=DEFAULT_RATE,
-        help=f"of bvh: {', '.join(map(str, RATES))} or native (default: {DEFAULT_RATE})",
+        default=argparse.SUPPRESS,
+        help=f"of bvh: {', '.join(map(rate_name, RATES))} or native (default: {rate_name(DEFAULT_RATE)})",
     )
     verb.add_argument("-o", "--output", type=Path, required=True, metavar="FILE")
     verb.add_argument("--overwrite", action="store_true", help="replace a file that is there, whoever made it")
@@ -115,10 +117,13 @@ def _export(add: AddVerb) -> None:
 
 def _add_solving(verb: argparse.ArgumentParser) -> None:
     _add_stature(verb, "for this run only")
-    verb.add_argument("--attitude", choices=tuple(ESTIMATORS), default="vqf")
-    verb.add_argument("--method", choices=("offline", "live"), default="offline")
+    verb.add_argument("--attitude", choices=tuple(ESTIMATORS), default="vqf", help="default: vqf")
+    verb.add_argument("--method", choices=("offline", "live"), default="offline", help="default: offline")
     verb.add_argument(
-        "--calibration", default="recorded", metavar="recorded|latest|FILE", help="which gyroscope correction to use"
+        "--calibration",
+        default="recorded",
+        metavar="recorded|latest|FILE",
+        help="which gyroscope correction to use (default: recorded)",
     )
     verb.add_argument(
         "--pose",
@@ -152,12 +157,13 @@ def _seconds(text: str) -> float:
     return seconds
 
 
-def _fps(text: str) -> int | None:
+def _fps(text: str) -> float | None:
     if text == "native":
         return None
-    if text.isdecimal() and int(text) in RATES:
-        return int(text)
-    raise argparse.ArgumentTypeError(f"{text!r} is none of {', '.join(map(str, RATES))}, native")
+    for rate in RATES:
+        if rate_name(rate) == text:
+            return rate
+    raise argparse.ArgumentTypeError(f"{text!r} is none of {', '.join(map(rate_name, RATES))}, native")
 
 
 def _pose(text: str) -> Mark:

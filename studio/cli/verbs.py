@@ -13,6 +13,7 @@ from studio.capture.sources import find_sources
 from studio.capture.truth import compare_with_truth
 from studio.capture.worker import Job, Worker
 from studio.cli import reports
+from studio.export.bvh import DEFAULT_RATE
 from studio.export.bvh import PRESETS as BVH_PRESETS
 from studio.export.csv_tables import PRESETS as CSV_PRESETS
 from studio.export.material import Wish
@@ -68,11 +69,15 @@ def export(arguments: Namespace) -> None:
         arguments.usage_error(f"a {arguments.format} file has the presets {', '.join(presets)}")
     if arguments.format == "bvh" and arguments.table:
         arguments.usage_error("--table goes with --format csv")
+    if arguments.output.suffix.lower() != f".{arguments.format}":
+        arguments.usage_error(f"a {arguments.format} file ends in .{arguments.format}, unlike {arguments.output.name}")
+    if arguments.format == "csv" and "fps" in arguments:
+        arguments.usage_error("--fps goes with --format bvh; tables keep the times at which the sensors measured")
     exporter = "bvh" if arguments.format == "bvh" else (arguments.table or "joints")
     request = jobs.ExportRequest(
         _solve_request(arguments),
         exporter,
-        Wish(preset, arguments.fps),
+        Wish(preset, getattr(arguments, "fps", DEFAULT_RATE)),
         Path(arguments.output).absolute(),
         arguments.overwrite,
     )

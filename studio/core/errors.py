@@ -11,8 +11,8 @@ The tree::
     │                     PoseNotHeld
     ├── TakeFileError     NotATake · Damaged · WrittenByNewerStudio · TakeUnsafe · TruthMissing
     ├── RecordingError    AlreadyRecording · StoppedEarly · DiskFull · FileAtLimit · FolderNotWritable
-    │                     VerificationFailed
-    ├── ImportFailed      RecordingUnreadable · MapFileInvalid · FormatUnknown
+    │                     FolderIsFile · VerificationFailed
+    ├── ImportFailed      RecordingMissing · RecordingUnreadable · MapMissing · MapFileInvalid · FormatUnknown
     └── ExportError       NothingToExport · CannotWrite · TargetTaken · ReadBackDiffers
 
 A malformed or lost packet is not an error but a count (``acquisition.health``). Our own mistakes
@@ -261,6 +261,13 @@ class FolderNotWritable(RecordingError):
 
 
 @dataclass(eq=False)
+class FolderIsFile(RecordingError):
+    """A file stands where a folder is wanted."""
+
+    path: str
+
+
+@dataclass(eq=False)
 class VerificationFailed(RecordingError):
     """The finished take could not be read back as it was written."""
 
@@ -273,6 +280,20 @@ class VerificationFailed(RecordingError):
 
 class ImportFailed(StudioError):
     """A foreign recording could not be turned into a take."""
+
+
+@dataclass(eq=False)
+class RecordingMissing(ImportFailed):
+    """There is no file or folder of this name."""
+
+    path: str
+
+
+@dataclass(eq=False)
+class MapMissing(ImportFailed):
+    """Tables do not tell what their columns mean, and no map does."""
+
+    paths: tuple[str, ...]
 
 
 @dataclass(eq=False)
@@ -309,6 +330,8 @@ class NothingToExport(ExportError):
     """The take holds nothing of what was asked for."""
 
     what: str
+    reason: str
+    """one clause, lower case, without full stop"""
 
 
 @dataclass(eq=False)

@@ -33,8 +33,8 @@ SEQUENCE = "ZXY"
 ROTATION_CHANNELS = tuple(f"{axis}rotation" for axis in SEQUENCE)
 POSITION_CHANNELS = ("Xposition", "Yposition", "Zposition")
 
-RATES = (24, 25, 30, 50, 60, 100, 120)
-"""Frames a second on offer beside the motion's own rate."""
+RATES: tuple[float, ...] = (24000 / 1001, 24, 25, 30000 / 1001, 30, 50, 60, 100, 120)
+"""Frames a second on offer beside the motion's own rate; of television in NTSC countries, 23.976 and 29.97 by name."""
 DEFAULT_RATE = 60
 """Programs for animation play one frame of a file as one frame of the scene, so a file must be at a rate
 that scenes use; of these 60 is the first that keeps a fast step or throw of a suit at 50 or 100 Hz."""
@@ -60,12 +60,17 @@ PRESETS = {
 _PUNCTUATION = Punctuation(b".", b" ", b"\n")
 
 
-def bvh_blocks(motion: Motion, preset: Preset, fps: int | None) -> Iterator[bytes]:
+def rate_name(fps: float) -> str:
+    """Return what people call a rate: 23.976, 24, 29.97."""
+    return f"{fps:.5g}"
+
+
+def bvh_blocks(motion: Motion, preset: Preset, fps: float | None) -> Iterator[bytes]:
     """Yield the file: the header, then some frames at a time.
 
     Parameters
     ----------
-    fps : int or None
+    fps : float or None
         One of RATES; None keeps the motion's own rate.
     """
     timing = timing_of(motion, fps)

@@ -61,7 +61,7 @@ class BvhFile(Protocol):
         ...
 
 
-def compare_with_motion(written: BvhFile, path: str, motion: Motion, preset: Preset, fps: int | None) -> None:
+def compare_with_motion(written: BvhFile, path: str, motion: Motion, preset: Preset, fps: float | None) -> None:
     """Raise ReadBackDiffers unless every joint of every frame stands where the motion has it, within 1e-3 cm."""
     timing = timing_of(motion, fps)
     if written.notes:

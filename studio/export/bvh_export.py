@@ -14,7 +14,7 @@ def export_bvh(material: Material, wish: Wish) -> Product:
     """Return the motion as a BVH file."""
     motion = material.motion
     if motion is None or not len(motion):
-        raise NothingToExport("motion")
+        raise NothingToExport("motion", "it has no frames")
     preset = PRESETS[wish.preset]
 
     def read_back(path: Path) -> None:

@@ -20,7 +20,7 @@ def export_joints(material: Material, wish: Wish) -> Product:
     """Return the joint angles of the motion, on its own grid."""
     motion = material.motion
     if motion is None or not len(motion):
-        raise NothingToExport("motion")
+        raise NothingToExport("motion", "it has no frames")
     facts = {
         "columns": {
             "time_s": TIME,

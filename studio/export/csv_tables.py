@@ -52,7 +52,7 @@ def joints_table(motion: Motion) -> Table:
     """Return ``time_s`` and one column in degrees for each angle of ``analysis.joint_angles``."""
     angles = joint_angles(motion)
     if not any(np.isfinite(angle.values).any() for angle in angles):
-        raise NothingToExport("joint angles")
+        raise NothingToExport("joint angles", _why_no_angles(motion))
     names = ("time_s", *(f"{angle.name}_deg" for angle in angles))
     degrees = np.degrees(np.stack([angle.values for angle in angles], axis=1))
     return Table(names, (Numbers(motion.time[:, None], 6), Numbers(degrees, 6)), len(motion))
@@ -66,7 +66,7 @@ def orientations_table(orientations: Orientations, assignment: Assignment) -> Ta
     """
     sampled = {sensor: (time, turned) for sensor, (time, turned) in orientations.items() if len(time) > 1}
     if not sampled:
-        raise NothingToExport("orientations")
+        raise NothingToExport("orientations", "no sensor has an orientation at two times or more")
     # The shortest step between samples, not their number: a sensor that was lost half the time is still the fastest.
     fastest = min(sampled, key=lambda sensor: float(np.median(np.diff(sampled[sensor][0]))))
     grid = sampled[fastest][0]
@@ -83,7 +83,7 @@ def raw_table(take: Take) -> Table:
     """Return every kept sample as it was decoded, a row each, in the order of arrival; nothing is interpolated."""
     streams = [stream for stream in take.streams if len(stream)]
     if not streams:
-        raise NothingToExport("samples")
+        raise NothingToExport("samples", "no sensor sent any")
     order = np.argsort(np.concatenate([stream.arrival for stream in streams]), kind="stable")
 
     def numbers(parts: Sequence[NDArray[np.generic]], decimals: int) -> Numbers:
@@ -119,6 +119,12 @@ def column_words(sensors: Iterable[SensorId], assignment: Assignment) -> dict[Se
             candidate, number = f"{word}_{number}", number + 1
         words[sensor] = candidate
     return words
+
+
+def _why_no_angles(motion: Motion) -> str:
+    known = [place.value.replace("_", " ") for place, measured in motion.measured.items() if measured.any()]
+    here = ", ".join(known) if known else "none"
+    return f"an angle needs the sensors on both sides of a joint with known headings, and known here: {here}"
 
 
 def _at(grid: Array, time: Array, turned: Array) -> Array:

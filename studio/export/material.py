@@ -36,7 +36,7 @@ class Wish:
 
     preset: str
     """A key of the exporter's PRESETS."""
-    fps: int | None = None
+    fps: float | None = None
     """Frames a second of a BVH, one of ``bvh.RATES``; None keeps the motion's own rate."""
 
 

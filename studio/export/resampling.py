@@ -38,7 +38,7 @@ class Poses:
     """(k, 3), m, world."""
 
 
-def timing_of(motion: Motion, fps: int | None) -> Timing:
+def timing_of(motion: Motion, fps: float | None) -> Timing:
     """Return the grid at ``fps`` frames a second; None keeps the motion's own rate, evened out where it varies."""
     if fps is None and is_even(motion):
         return Timing(len(motion), motion.frame_s)
@@ -51,7 +51,7 @@ def is_even(motion: Motion) -> bool:
     return bool((np.abs(np.diff(motion.time) - motion.frame_s) <= EVEN).all())
 
 
-def blocks_of_poses(motion: Motion, fps: int | None) -> Iterator[Poses]:
+def blocks_of_poses(motion: Motion, fps: float | None) -> Iterator[Poses]:
     """Yield the motion on the grid of ``timing_of``: rotations along the shortest way, the Hips linearly.
 
     A pose that is not finite is held from the frame before (the T-pose where there is none); how many

@@ -5,7 +5,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import cast
 
-from studio.core.errors import FormatUnknown
+from studio.core.errors import FormatUnknown, MapMissing, RecordingMissing
 from studio.core.take import Take
 from studio.importers.xio import looks_like_xio
 
@@ -38,10 +38,11 @@ def import_recording(paths: Sequence[Path], name: str, map_file: Path | None) ->
 
     Raises
     ------
-    FormatUnknown
-        When no importer knows the paths, or tables come without a map.
-    MapFileInvalid, RecordingUnreadable
+    RecordingMissing, FormatUnknown, MapMissing, MapFileInvalid, RecordingUnreadable
     """
+    for path in (*paths, *([map_file] if map_file else [])):
+        if not path.exists():
+            raise RecordingMissing(str(path))
     if name == "auto":
         name = "csv" if map_file is not None else detect(paths)
     module, _, function = IMPORTERS[name].partition(":")
@@ -49,6 +50,5 @@ def import_recording(paths: Sequence[Path], name: str, map_file: Path | None) ->
     if name != "csv":
         return read(*paths)
     if map_file is None:
-        # A table alone does not tell what its columns mean.
-        raise FormatUnknown(tuple(str(path) for path in paths))
+        raise MapMissing(tuple(str(path) for path in paths))
     return read(paths, map_file)

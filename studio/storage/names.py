@@ -9,7 +9,7 @@ SLUG_LIMIT = 64  # characters; with library, person and session a path stays und
 NOBODY = "P000"
 """Folder of foreign recordings that do not tell whose they are; no person is given this code."""
 
-_CODE = re.compile(r"[A-Za-z0-9]{1,16}")
+_CODE = re.compile(r"(?=.*[0-9])[A-Za-z0-9]{1,16}")  # a word without a digit is a name
 _DEVICES = {"CON", "PRN", "AUX", "NUL", *(f"{port}{n}" for port in ("COM", "LPT") for n in range(10))}
 """Names Windows keeps for devices (learn.microsoft.com, "Naming Files, Paths, and Namespaces")."""
 
@@ -20,7 +20,7 @@ def person_folder(code: str) -> str:
     Raises
     ------
     PersonCodeInvalid
-        Anything but 1 to 16 letters and digits, and what Windows takes for a device.
+        Anything but 1 to 16 letters and digits with a digit among them, and what Windows takes for a device.
     """
     if not code:
         return NOBODY

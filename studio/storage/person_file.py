@@ -5,12 +5,13 @@ from typing import Any, Final
 
 import msgspec
 
-from studio.core.errors import FolderNotWritable, WrittenByNewerStudio
+from studio.core.errors import WrittenByNewerStudio
 from studio.core.take import Assignment, Mounting
 from studio.storage import documents
 from studio.storage.filesystem import FOLDER_MODE
 from studio.storage.limits import STATURES
 from studio.storage.names import person_folder
+from studio.storage.session_folder import refusal_of
 
 PERSON_JSON: Final = "person.json"
 SCHEMA: Final = 1
@@ -50,7 +51,7 @@ def save_person(library: Path, code: str, person: Person) -> None:
 
     Raises
     ------
-    PersonCodeInvalid, WrittenByNewerStudio, FolderNotWritable
+    PersonCodeInvalid, WrittenByNewerStudio, FolderNotWritable, FolderIsFile
     """
     load_person(library, code)
     folder = library / person_folder(code)
@@ -59,7 +60,7 @@ def save_person(library: Path, code: str, person: Person) -> None:
         folder.mkdir(mode=FOLDER_MODE, exist_ok=True)
         documents.save(folder / PERSON_JSON, person)
     except OSError as error:
-        raise FolderNotWritable(str(folder)) from error
+        raise refusal_of(folder) from error
 
 
 def person_schema() -> dict[str, Any]:

@@ -6,7 +6,7 @@ from datetime import date
 from pathlib import Path
 from typing import NamedTuple
 
-from studio.core.errors import FolderNotWritable
+from studio.core.errors import FolderIsFile, FolderNotWritable, RecordingError
 from studio.storage.filesystem import FILES, FOLDER_MODE, FileSystem, is_held
 from studio.storage.names import person_folder, slug
 from studio.storage.profile import PART_FILE, TAKE_FILE
@@ -29,7 +29,7 @@ def open_session(library: Path, person: str, day: date) -> Path:
 
     Raises
     ------
-    PersonCodeInvalid, FolderNotWritable
+    PersonCodeInvalid, FolderNotWritable, FolderIsFile
     """
     sessions = _sessions(library / person_folder(person), day)
     if sessions:
@@ -42,7 +42,7 @@ def new_session(library: Path, person: str, day: date) -> Path:
 
     Raises
     ------
-    PersonCodeInvalid, FolderNotWritable
+    PersonCodeInvalid, FolderNotWritable, FolderIsFile
     """
     folder = library / person_folder(person)
     try:
@@ -55,8 +55,16 @@ def new_session(library: Path, person: str, day: date) -> Path:
                 session.mkdir(mode=FOLDER_MODE)
                 return session
     except OSError as error:
-        raise FolderNotWritable(str(library)) from error
+        raise refusal_of(library) from error
     raise FolderNotWritable(str(folder))
+
+
+def refusal_of(folder: Path) -> RecordingError:
+    """Return why a folder could not be made or written."""
+    for part in (folder, *folder.parents):
+        if part.exists():
+            return FolderNotWritable(str(folder)) if part.is_dir() else FolderIsFile(str(part))
+    return FolderNotWritable(str(folder))
 
 
 def make_take_folder(session: Path, name: str, filesystem: FileSystem = FILES) -> Path:

@@ -218,7 +218,7 @@ TEMPLATES = _by_id(
         "set.person_code",
         "“{code}” cannot stand for a person.",
         "Takes are kept under a code, never under a name, so that a lost file tells nobody who was measured.",
-        "Use a letter and a number, for example P014.",
+        "Use letters and a number, at most 16 together, for example P014.",
     ),
     # Recording
     Message(
@@ -255,6 +255,12 @@ TEMPLATES = _by_id(
         "rec.folder",
         "Recordings cannot be kept in {folder}.",
         "The studio has no right to write there.",
+        "Choose another folder.",
+    ),
+    Message(
+        "rec.is_file",
+        "{path} is a file, not a folder.",
+        "A library is a folder, with a folder in it for each person.",
         "Choose another folder.",
     ),
     Message(
@@ -296,6 +302,18 @@ TEMPLATES = _by_id(
     ),
     # Importing
     Message(
+        "imp.missing",
+        "{path} is not there.",
+        "There is no file or folder of this name.",
+        "Check the name, and the folder you are in.",
+    ),
+    Message(
+        "imp.no_map",
+        "A map is missing.",
+        "A table does not tell what its columns mean: {paths}.",
+        "Describe the columns in a map and import again with --map FILE; the manual shows how.",
+    ),
+    Message(
         "imp.line",
         "{file} cannot be imported.",
         "Line {line}: {reason}.",
@@ -316,14 +334,14 @@ TEMPLATES = _by_id(
     Message(
         "imp.format",
         "The format was not recognised.",
-        "Nothing that can import these was found: {paths}.",
-        "Describe the columns in a map and import with --format csv --map FILE.",
+        "These are neither a folder of x-io sensors nor tables of numbers: {paths}.",
+        "Export the recording as a table (CSV) from the program it came from, and describe its columns in a map.",
     ),
     # Exporting
     Message(
         "exp.nothing",
         "There is nothing to export.",
-        "The take holds no {what}.",
+        "The take holds no {what}: {reason}.",
         "Choose something else to export, or another take.",
     ),
     Message(
@@ -367,6 +385,7 @@ MESSAGE_OF: dict[type[StudioError], str | Callable[[Any], str]] = {
     errors.DiskFull: lambda error: "rec.disk_full" if error.kept_s > 0 else "rec.no_room",
     errors.FileAtLimit: "rec.file_limit",
     errors.FolderNotWritable: "rec.folder",
+    errors.FolderIsFile: "rec.is_file",
     errors.VerificationFailed: "rec.verify_fail",
     errors.NotATake: "open.not_take",
     errors.Damaged: "open.damaged",
@@ -374,6 +393,8 @@ MESSAGE_OF: dict[type[StudioError], str | Callable[[Any], str]] = {
     errors.TakeUnsafe: "open.refused",
     errors.TruthMissing: "open.no_truth",
     errors.RecordingUnreadable: lambda error: "imp.line" if error.line else "imp.file",
+    errors.RecordingMissing: "imp.missing",
+    errors.MapMissing: "imp.no_map",
     errors.MapFileInvalid: "imp.map",
     errors.FormatUnknown: "imp.format",
     errors.NothingToExport: "exp.nothing",

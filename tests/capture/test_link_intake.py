@@ -152,3 +152,13 @@ def test_the_suit_alone_knows_the_truth():
 
     assert truth
     assert nothing is None
+
+
+def test_a_device_that_sends_words_is_not_called_silent():
+    """No dialect takes them for a damaged message of its own; still something arrived, and nothing was a sensor."""
+    intake = LinkIntake(Deaf())
+
+    for number in range(5):
+        assert list(intake.samples(Arrival(0.1 * number, b"temperature 21.5 C\r\n"))) == []
+
+    assert intake.malformed() == 5

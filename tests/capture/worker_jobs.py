@@ -13,7 +13,7 @@ def count(request, progress):
 
 
 def refuse(request, progress):
-    raise NothingToExport(request)
+    raise NothingToExport(request, "it is a test")
 
 
 def die(request, progress):

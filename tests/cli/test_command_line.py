@@ -51,9 +51,15 @@ def test_without_a_verb_and_a_screen_it_says_so(capsys, monkeypatch):
         ["record", "--library", "x"],
         ["record", "--source", "synthetic", "--library", "x", "--seconds", "-3"],
         ["record", "--source", "synthetic", "--library", "x", "--seconds", "soon"],
-        ["export", "x", "--format", "bvh", "--fps", "17", "-o", "y"],
-        ["export", "x", "--format", "bvh", "--preset", "excel", "-o", "y"],
-        ["export", "x", "--format", "bvh", "--table", "raw", "-o", "y"],
+        ["export", "x", "--format", "bvh", "--fps", "17", "-o", "y.bvh"],
+        ["export", "x", "--format", "bvh", "--preset", "excel", "-o", "y.bvh"],
+        ["export", "x", "--format", "bvh", "--table", "raw", "-o", "y.bvh"],
+        ["export", "x", "--format", "bvh", "-o", "y.csv"],
+        ["export", "x", "--format", "csv", "-o", "y.bvh"],
+        ["export", "x", "--format", "csv", "-o", "y"],
+        ["export", "x", "--format", "csv", "--fps", "60", "-o", "y.csv"],
+        ["export", "x", "--format", "csv", "--fps", "native", "-o", "y.csv"],
+        ["export", "x", "--format", "bvh", "--fps", "23.98", "-o", "y.bvh"],
         ["solve", "x", "--pose", "n=3"],
         ["solve", "x", "--pose", "handstand=1..2"],
         ["solve", "x", "--pose", "n=4..2"],
@@ -78,6 +84,29 @@ def test_what_cannot_be_done_is_one_sentence_and_1(tmp_path, capsys, take):
     refused(capsys, "solve", take, "--calibration", tmp_path / "none.json")
     refused(capsys, "solve", take, "--pose", "n=50..60")
     refused(capsys, "inspect", take, "--truth")
+
+
+def test_a_refusal_gives_the_reason_that_is_true(tmp_path, capsys, take):
+    """What there is to do depends on it."""
+    table, file = tmp_path / "walk.csv", tmp_path / "file"
+    table.write_text("a,b\n1,2\n3,4\n")
+    file.write_text("no folder")
+    bvh = ("export", take, "--format", "bvh", "-o")
+    into = ("--library", tmp_path / "other")
+
+    assert "there is no folder" in refused(capsys, *bvh, tmp_path / "no" / "walk.bvh")
+    (tmp_path / "walk.bvh").mkdir()
+    assert "it is a folder" in refused(capsys, *bvh, tmp_path / "walk.bvh")
+    assert "is a file, not a folder" in refused(capsys, *bvh, file / "walk.bvh")
+    assert "the folder of a take" in refused(capsys, *bvh, take / "walk.bvh")
+    assert "is not there" in refused(capsys, "import", tmp_path / "gone", *into)
+    assert "is not there" in refused(capsys, "import", table, "--map", tmp_path / "gone.json", *into)
+    assert "A map is missing" in refused(capsys, "import", table, *into)
+    assert "neither a folder of x-io" in refused(capsys, "import", file, *into)
+    synthetic = ("record", "--source", "synthetic:walk?speed=max", "--seconds", "1")
+    assert "is a file, not a folder" in refused(capsys, *synthetic, "--library", file)
+    assert "Jane" in refused(capsys, *synthetic, *into, "--person", "Jane")
+    assert not (tmp_path / "other").exists()
 
 
 def test_solve_shows_where_each_heading_came_from(take, capsys):

@@ -12,7 +12,7 @@ import pytest
 from studio.core import body, rotation
 from studio.core.body import Segment
 from studio.core.errors import ReadBackDiffers
-from studio.export.bvh import PRESETS, RATES, bvh_blocks
+from studio.export.bvh import PRESETS, RATES, bvh_blocks, rate_name
 from studio.export.bvh_check import compare_with_motion
 from studio.export.resampling import BLOCK, timing_of, unfinished
 from studio.importers.bvh import joint_positions, read_bvh
@@ -98,10 +98,20 @@ def test_a_rate_on_offer_has_its_exact_frame_time_and_count(tmp_path, fps):
     """10 s at 50 Hz and the first frame of the eleventh second."""
     read = read_bvh(exported(tmp_path, moving_body(501), fps=fps))
 
-    assert len(read.values) == 10 * fps + 1
-    assert read.frame_time == pytest.approx(1 / fps, rel=1e-9)
+    assert len(read.values) == int(10 * fps) + 1
+    assert read.frame_time == pytest.approx(1 / fps, rel=1e-11)
     # Blender counts frames a second from the text: nine digits make them whole.
-    assert round(1 / read.frame_time, 6) == fps
+    assert 1 / read.frame_time == pytest.approx(fps, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("name", "frame_time"), [("23.976", "0.0417083333333"), ("29.97", "0.0333666666667"), ("24", "0.0416666666667")]
+)
+def test_rates_of_television_are_fractions_of_1001(tmp_path, name, frame_time):
+    """1001/24000 s and 1001/30000 s: 23.976 would be off by a frame after 12 hours, 24 after a minute."""
+    (fps,) = [rate for rate in RATES if rate_name(rate) == name]
+
+    assert f"Frame Time: {frame_time}\n" in exported(tmp_path, moving_body(51), fps=fps).read_text()
 
 
 def test_the_motions_own_rate_writes_its_own_frames(tmp_path):

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from studio.core.body import Place
-from studio.core.errors import FormatUnknown
+from studio.core.errors import FormatUnknown, MapMissing, RecordingMissing
 from studio.core.sample import SensorId
 from studio.importers.place_words import guess_assignment, guess_place
 from studio.importers.registry import IMPORTERS, detect, import_recording
@@ -45,8 +45,25 @@ def test_a_table_needs_a_map(tmp_path):
     table = tmp_path / "walk.csv"
     table.write_text("1,2\n")
 
-    with pytest.raises(FormatUnknown):
-        import_recording([table], "auto", None)
+    for name in ("auto", "csv"):
+        with pytest.raises(MapMissing) as refusal:
+            import_recording([table], name, None)
+        assert refusal.value.paths == (str(table),)
+
+
+def test_a_path_that_is_not_there_is_named_whatever_the_format(tmp_path):
+    table = tmp_path / "walk.csv"
+    table.write_text("1,2\n")
+
+    for paths, name, map_file in (
+        ([tmp_path / "gone"], "auto", None),
+        ([tmp_path / "gone"], "xio", None),
+        ([table, tmp_path / "gone"], "csv", table),
+        ([table], "csv", tmp_path / "gone"),
+    ):
+        with pytest.raises(RecordingMissing) as refusal:
+            import_recording(paths, name, map_file)
+        assert refusal.value.path == str(tmp_path / "gone")
 
 
 @pytest.mark.parametrize(

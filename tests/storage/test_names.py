@@ -10,8 +10,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from studio.core.errors import FolderNotWritable, PersonCodeInvalid
+from studio.core.errors import FolderIsFile, PersonCodeInvalid
 from studio.storage.names import SLUG_LIMIT, person_folder, slug
+from studio.storage.person_file import Person, save_person
 from studio.storage.session_folder import list_takes, make_take_folder, new_session, open_session
 from tests.storage.recordings import DAY, start_writing
 
@@ -73,13 +74,14 @@ def test_numbers_go_on_after_the_highest_one_and_past_999(tmp_path: Path) -> Non
     assert make_take_folder(tmp_path, "walk").name == "take-1000_walk"
 
 
-@pytest.mark.parametrize("code", ["P014", "p014", "A", "1234567890123456"])
+@pytest.mark.parametrize("code", ["P014", "p014", "7", "AB12c", "1234567890123456"])
 def test_a_code_is_letters_and_digits(code: str) -> None:
     assert person_folder(code) == code.upper()
 
 
 @pytest.mark.parametrize(
-    "code", ["P 14", "P-14", "../P14", "Jürgen", "12345678901234567", "P14\n", ".", "CON", "nul", "com1", "１４"]
+    "code",
+    ["Jane", "A", "P 14", "P-14", "../P14", "Jürgen", "12345678901234567", "P14\n", ".", "CON", "nul", "com1", "１４"],
 )
 def test_anything_else_is_no_code(code: str) -> None:
     with pytest.raises(PersonCodeInvalid):
@@ -96,11 +98,16 @@ def test_sessions_of_one_day_are_lettered(tmp_path: Path) -> None:
     assert open_session(tmp_path, "P015", DAY) == tmp_path / "P015" / "2026-11-24a"
 
 
-def test_a_library_that_cannot_be_made_is_said_so(tmp_path: Path) -> None:
+@pytest.mark.parametrize("inside", ["", "of the clinic"])
+def test_a_file_where_the_library_should_be_is_named(tmp_path: Path, inside: str) -> None:
     (tmp_path / "library").write_text("a file where a folder should be")
 
-    with pytest.raises(FolderNotWritable):
-        open_session(tmp_path / "library", "P014", DAY)
+    with pytest.raises(FolderIsFile) as refusal:
+        open_session(tmp_path / "library" / inside, "P014", DAY)
+    assert refusal.value.path == str(tmp_path / "library")
+
+    with pytest.raises(FolderIsFile):
+        save_person(tmp_path / "library" / inside, "P014", Person())
 
 
 def test_two_takes_of_one_name_are_two_takes(tmp_path: Path) -> None:

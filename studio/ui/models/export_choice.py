@@ -13,13 +13,13 @@ from studio.analysis.joint_angles import joint_angles
 from studio.core.body import PLACES, Place, Skeleton
 from studio.core.pose import Motion
 from studio.core.take import Alignment
-from studio.export.bvh import DEFAULT_RATE, RATES
+from studio.export.bvh import DEFAULT_RATE, RATES, rate_name
 from studio.export.material import Wish
 from studio.storage.names import slug
 from studio.storage.take_summary import TakeSummary
 
 Family = Literal["bvh", "csv"]
-Rate = int | None
+Rate = float | None
 """Frames a second; None keeps the rate of the recording."""
 
 # Bytes of a cell with its separator, as real files have them on average (tests/ui/test_export_choice.py).
@@ -100,7 +100,7 @@ class ExportChoice(QObject):
     def preset(self) -> str:
         """The choice as words that ``use`` understands: what is remembered."""
         if self.format.family == "bvh":
-            return f"{self.format.key}:{self.rate or 'own'}"
+            return f"{self.format.key}:{'own' if self.rate is None else rate_name(self.rate)}"
         return f"{self.format.key}:{'excel' if self.for_excel else 'plain'}"
 
     def use(self, preset: str) -> None:
@@ -114,8 +114,8 @@ class ExportChoice(QObject):
             self.for_excel = detail == "excel"
         elif detail == "own":
             self.rate = None
-        elif detail.isdecimal() and int(detail) in RATES:
-            self.rate = int(detail)
+        else:
+            self.rate = next((rate for rate in RATES if rate_name(rate) == detail), self.rate)
         self.changed.emit()
 
     def set_takes(self, takes: Sequence[TakeSummary]) -> None:

@@ -8,7 +8,7 @@ import asyncio
 import math
 import time
 from collections.abc import Callable, Collection, Coroutine, Mapping
-from concurrent.futures import Future
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -94,6 +94,8 @@ class StudioModel(QObject):
         self._health_at = -math.inf
         self._knows_body = False
         self._is_closed = False
+        self._disk = ThreadPoolExecutor(1, "disk")
+        """One thread: a star and the mark that follows it must not overtake each other."""
         self.heard_at = -math.inf
         """s, clock of ``now``: when a sample of any sensor last came in."""
         self._received = 0
@@ -195,8 +197,8 @@ class StudioModel(QObject):
     def work(
         self, task: Callable[[], T], done: Callable[[T], None], refused: Callable[[StudioError], None] | None = None
     ) -> None:
-        """Let something that waits for the disk be done away from the Qt thread."""
-        self._ask(asyncio.to_thread(task), done, refused)
+        """Let something that waits for the disk be done away from the Qt thread, one thing after the other."""
+        self._ask(self._on_disk(task), done, refused)
 
     def tick(self, now: float) -> None:
         """Tell what has happened since the last tick."""
@@ -224,6 +226,7 @@ class StudioModel(QObject):
             self._runtime.call(self._session.stop_recording()).result()
         self._runtime.call(self._session.disconnect()).result()
         self._runtime.stop()
+        self._disk.shutdown()
         self.worker.close()
 
     def _ask(
@@ -239,6 +242,9 @@ class StudioModel(QObject):
         operation.done.connect(done)
         operation.refused.connect(refused or self.refused.emit)
         self.run(operation, lambda tell: self._runtime.call(coroutine))
+
+    async def _on_disk(self, task: Callable[[], T]) -> T:
+        return await asyncio.get_running_loop().run_in_executor(self._disk, task)
 
     async def _connect(self, source: str) -> None:
         await self._session.disconnect()

@@ -20,7 +20,7 @@ from PySide6.QtWidgets import (
 )
 
 from studio.core.errors import StudioError
-from studio.export.bvh import RATES
+from studio.export.bvh import RATES, rate_name
 from studio.ui.models.export_choice import FORMATS, ExportChoice
 from studio.ui.models.take_list_model import length
 from studio.ui.theme import FORM_WIDTH, GAP, GAP_PAGE, GAP_WIDE, GRID, RECORD, Theme
@@ -188,7 +188,7 @@ class ExportPage(QWidget):
         self.rate.setAccessibleName(self.tr("Frames a second"))
         self.rate.addItem(self.tr("as recorded"), 0)
         for rate in RATES:
-            self.rate.addItem(self.tr("{n} frames a second").format(n=rate), rate)
+            self.rate.addItem(self.tr("{n} frames a second").format(n=rate_name(rate)), rate)
         self._rate_label = QLabel(self.tr("Frame rate"), self)
         self._rate_label.setBuddy(self.rate)
         self.excel.setAccessibleName(self.excel.text())
@@ -292,7 +292,11 @@ class ExportPage(QWidget):
         return self.tr("{n:.1f} GB").format(n=size / 1e9)
 
     def _set_busy(self, *, on: bool) -> None:
-        self._busy = on
+        was, self._busy = self._busy, on
+        if on and not was:
+            self.setFocus()  # or Qt hands the keyboard to what comes next: the record button
+        elif was and not on and self.hasFocus():
+            self.start.setFocus()
         self.start.setEnabled(not on and bool(self.choice.takes))
         count = len(self.choice.takes)
         self.start.setText(self.tr("Export") if count <= 1 else self.tr("Export {n} takes").format(n=count))
@@ -305,7 +309,8 @@ class ExportPage(QWidget):
         self.choice.set_format(card.key)
 
     def _on_rate(self) -> None:
-        self.choice.set_rate(int(self.rate.currentData()) or None)
+        self.result.hide()
+        self.choice.set_rate(self.rate.currentData() or None)
 
     def _on_name(self) -> None:
         typed = self.name.text().strip()
