@@ -4,6 +4,7 @@ import contextlib
 import os
 import shutil
 import sys
+import threading
 from pathlib import Path
 
 from studio.storage.longest_file import longest_file
@@ -145,7 +146,7 @@ def is_held(file: Path) -> bool:
 
 def write_atomically(file: Path, data: bytes, filesystem: FileSystem = FILES) -> None:
     """Write a small file so that it is either the old or the new one, whatever happens meanwhile."""
-    temporary = file.with_name(f".{file.name}.{os.getpid()}.tmp")
+    temporary = file.with_name(f".{file.name}.{os.getpid()}-{threading.get_ident()}.tmp")
     filesystem.remove(temporary)
     descriptor = filesystem.create(temporary)
     try:

@@ -4,6 +4,7 @@ import sys
 import threading
 import traceback
 from pathlib import Path
+from queue import SimpleQueue
 from types import TracebackType
 
 import platformdirs
@@ -40,6 +41,7 @@ def run(source: str = "") -> int:
     window = StudioWindow(application, theme, settings)
     reporter = CrashReporter(window, theme)
     reporter.install()
+    window.tick.ticked.connect(reporter.tick)
     window.start(source or _first_source(settings, guard, window))
     garbage = GarbageCollector()
     window.tick.ticked.connect(garbage.tick)
@@ -70,6 +72,7 @@ class CrashReporter:
         self._window = window
         self._theme = theme
         self._told = 0
+        self._waiting: SimpleQueue[BaseException] = SimpleQueue()
         self._before = sys.excepthook, threading.excepthook
 
     def install(self) -> None:
@@ -98,9 +101,14 @@ class CrashReporter:
         dialog.show()
 
     def _on_thread(self, told: threading.ExceptHookArgs) -> None:
-        # A dialog belongs to the Qt thread; the report is written here, the tick tells of it.
         if told.exc_value is not None:
-            write_crash_report(told.exc_value, crash_folder())
+            self._waiting.put(told.exc_value)
+
+    def tick(self, now: float) -> None:
+        """Tell what broke on another thread: a dialog belongs to the Qt thread."""
+        while not self._waiting.empty():
+            error = self._waiting.get()
+            self._on_mistake(type(error), error, error.__traceback__)
 
 
 def _show_reports() -> None:

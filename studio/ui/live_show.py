@@ -14,6 +14,7 @@ from studio.ui.models.stage_pose import StagePose
 from studio.ui.models.studio_model import StudioModel
 
 SILENT_AFTER = 0.5  # s; 25 frames: a limb whose sensor says nothing turns hollow
+BUSY_FOR = 5.0  # s; a source that says nothing for longer is gone
 ANGLES_EVERY = 0.04  # s; 25 numbers a second are more than an eye reads
 LOSS_WORTH_SAYING = 0.05
 
@@ -71,12 +72,19 @@ class LiveShow(QObject):
 
     def silent(self) -> dict[Place, str]:
         """Return the places whose sensor has stopped sending, with their names."""
+        if self._is_behind():
+            return {}
         health, worn = self._model.health, self._model.setup.assignment.sensors
         return {
             place: self._words[place]
             for place in PLACES
             if place in worn and worn[place] in health and health[worn[place]].silent_for > SILENT_AFTER
         }
+
+    def _is_behind(self) -> bool:
+        """Whether all sensors fell silent at once: that is this computer, not fifteen batteries."""
+        silences = [told.silent_for for told in self._model.health.values()]
+        return len(silences) > 1 and min(silences) > SILENT_AFTER and max(silences) < BUSY_FOR
 
     def readiness(self, next_take: str, disk_left: float | None) -> ReadinessState:
         """Return what the strip shows."""
@@ -97,7 +105,7 @@ class LiveShow(QObject):
             disk_left=left,
             buffer_fill=model.queue_fill,
             next_take=next_take,
-            elapsed=self._recorder.elapsed,
+            elapsed=self._recorder.left or self._recorder.elapsed,
             problems=problems,
         )
 
@@ -111,6 +119,10 @@ class LiveShow(QObject):
         model = self._model
         if not model.source:
             return (Problem(self.tr("No sensors are connected."), self.tr("Connect"), "connect"),)
+        if model.connecting:
+            return (Problem(self.tr("The source is being opened…"), self.tr("Connect"), "connect"),)
+        if self._is_behind():
+            return (Problem(self.tr("This computer is busy: samples are read late, none is lost."), "", ""),)
         stopped = self.tr("{place} has stopped sending.")
         connect = self.tr("Connect")
         problems = [Problem(stopped.format(place=words), connect, "connect") for words in self.silent().values()]

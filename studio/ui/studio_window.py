@@ -125,6 +125,8 @@ class StudioWindow(QObject):
             self.connect_.shown()
         elif name == "review" and not self.review.is_current:
             self.review.read_library()
+        elif name == "review":
+            self.review.open_newest()
 
     def shut_down(self) -> None:
         """Stop everything in order; what is being recorded is saved first."""
@@ -344,8 +346,8 @@ class StudioWindow(QObject):
 
     def review_take(self, folder: Path) -> None:
         """Look at a take."""
-        self.go_to("review")
         self.review.open_take(folder)
+        self.go_to("review")
 
     def _on_bad(self, folder: Path) -> None:
         self.review.judge(folder, "bad")

@@ -16,6 +16,7 @@ from studio.core.take import Alignment
 
 KEPT = 60.0  # s
 MOST_SHOWN = 4
+BREAK = 0.15  # s; poses are shown 25 times a second
 
 
 class Shown(NamedTuple):
@@ -70,7 +71,9 @@ class LiveAngles(QObject):
             self.names = tuple(angles)
             self.names_changed.emit()
         self._newest = angles
-        before = self._history[-1][1] if self._history else {}
+        newest, before = self._history[-1] if self._history else (pose.time, {})
+        if pose.time - newest > BREAK:  # nobody looked meanwhile: no line is drawn across
+            self._history.append((pose.time - BREAK / 2, {}))
         values = {
             name: _running_on(float(np.degrees(a.values[0])), before.get(name, np.nan)) for name, a in angles.items()
         }

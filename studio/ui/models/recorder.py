@@ -50,6 +50,11 @@ class Recorder(QObject):
         self._closing = False
 
     @property
+    def left(self) -> float:
+        """s left of the countdown as counted last; 0 when there is none."""
+        return float(self._told) if self.phase is Phase.COUNTDOWN else 0.0
+
+    @property
     def is_busy(self) -> bool:
         """Whether something would be lost if everything ended now."""
         return self.phase in (Phase.STARTING, Phase.RECORDING, Phase.SAVING)

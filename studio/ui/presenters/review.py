@@ -69,6 +69,12 @@ class ReviewPresenter(QObject):
         self._page.takes.set_loading(True)
         self._model.work(lambda: summaries(library), self._on_library, self._on_library_refused)
 
+    def open_newest(self) -> None:
+        """Look at the newest take, when none is looked at."""
+        takes = [take for take in self._page.takes.model.newest() if take.refusal is None]
+        if takes and self._wanted == Path():
+            self.open_take(takes[0].folder)
+
     def put(self, summary: TakeSummary) -> None:
         """A take is new in the library, or something is said of it."""
         self._page.takes.model.put(summary)
@@ -113,6 +119,8 @@ class ReviewPresenter(QObject):
         self._page.takes.model.set_takes(takes)
         self.is_current = True
         self.library_read.emit(tuple(takes))
+        if self._page.isVisible():
+            self.open_newest()
 
     def _on_library_refused(self, error: StudioError) -> None:
         self._page.takes.set_loading(False)

@@ -62,6 +62,7 @@ class CapturePage(QWidget):
         self._numbers = [AngleNumber(theme, self) for _ in range(MOST_SHOWN)]
         self._choices = [QComboBox(self) for _ in range(MOST_SHOWN)]
         self._countdown = QLabel(stage)
+        self._shown = (stage, traces)
         self._build(stage, traces)
         self.restyle()
 
@@ -123,6 +124,7 @@ class CapturePage(QWidget):
             row.setProperty("folder", take.folder)
             row.setToolTip(self.tr("Review this take"))
             row.setAccessibleName(self.tr("Review take {name}, {length}, {loss}").format(**take._asdict()))
+            row.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
             row.clicked.connect(self._open_take)
             self._takes.addWidget(row)
         self._no_takes.setVisible(not takes)
@@ -142,6 +144,10 @@ class CapturePage(QWidget):
         self._countdown.setStyleSheet(f"color: {theme.tokens.text}; background: transparent;")
         for number in self._numbers:
             number.restyle()
+        for part in self._shown:
+            restyle = getattr(part, "restyle", None)
+            if restyle is not None:
+                restyle()
 
     def _build(self, stage: QWidget, traces: QWidget) -> None:
         stage.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
@@ -225,6 +231,8 @@ class CapturePage(QWidget):
         column.addWidget(self._section(self.tr("Large numbers")))
         for row, box in enumerate(self._choices):
             box.setAccessibleName(self.tr("Angle {n}").format(n=row + 1))
+            box.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
+            box.setMinimumContentsLength(8)
             box.currentIndexChanged.connect(self._tell_angles)
             column.addWidget(box)
         self.least, self.most = QDoubleSpinBox(self), QDoubleSpinBox(self)

@@ -44,6 +44,7 @@ class HomePage(QFrame):
     def __init__(self, theme: Theme, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._theme = theme
+        self._stage: QWidget | None = None
         self.caption = QLabel(self.tr("This is a simulated performer"), self)
         self.coach = CoachMarks(theme, self)
         self.sensors = QPushButton(self.tr("Use my sensors  →"), self)
@@ -61,6 +62,7 @@ class HomePage(QFrame):
 
     def set_stage(self, stage: QWidget) -> None:
         """Put the figure in its place."""
+        self._stage = stage
         self._stage_place.insertWidget(0, stage, 1)
 
     def show_coach_marks(self, shown: bool) -> None:
@@ -87,6 +89,9 @@ class HomePage(QFrame):
         self._side.setFixedWidth(round(SIDE_WIDTH * (1 + max(self._theme.text_scale - 1, 0) / 2)))
         self.text_size.restyle()
         self.scheme.restyle()
+        restyle = getattr(self._stage, "restyle", None)
+        if restyle is not None:
+            restyle()
 
     def _build(self) -> None:
         self.setProperty("ground", "window")

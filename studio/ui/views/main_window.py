@@ -253,7 +253,9 @@ class MainWindow(QWidget):
             announce(self.strip, words[state.phase])
 
     def _on_key(self, action: str) -> None:
-        if action in PAGES:
+        if self.overlay.isVisible() and action not in ("help", "cancel"):
+            self.overlay.close_overlay()  # who reads the list tries a key: it acts on what is seen then
+        elif action in PAGES:
             self.page_requested.emit(action)
         elif action == "record":
             self.record_requested.emit()
@@ -274,6 +276,8 @@ class MainWindow(QWidget):
             self.sheet.refuse()
         elif self.strip.problems.isVisible():
             self.strip.problems.close_list()
+        elif self.isFullScreen():
+            self.toggle_full_screen()
         else:
             return False
         return True

@@ -145,6 +145,8 @@ class ReviewPage(QWidget):
         self.measures.setFixedWidth(round(MEASURES_WIDTH * scale))
         for part in (self.takes, self.measures, self.timeline, self.transport, self.state, self.plot):
             part.restyle()
+        if self._stage is not None:
+            self._stage.restyle()
 
     def _build(self) -> None:
         self.plot.setParent(self)

@@ -17,7 +17,7 @@ ROOM = 1.42  # of the stature; what the height shows at the target
 NARROWEST = 0.86  # of the height; a narrower picture is measured by its width, so that the arms stay in it
 LARGE = 900.0  # px; from this height on lines grow
 NEAR = 0.2  # m; nothing nearer is drawn
-NEAREST, FARTHEST = 0.8, 30.0  # m, from eye to target
+NEAREST, FARTHEST = 1.5, 15.0  # m, from eye to target
 STEEPEST = math.radians(89.9)  # rad; straight down has no "up"
 LOWEST = math.radians(-20.0)  # rad; from below one would look through the floor
 

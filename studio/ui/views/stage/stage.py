@@ -205,7 +205,8 @@ class Stage(QWidget):
         elif self._ghost is not None:
             self._paint_ghost(painter, self._ghost)
         else:
-            self._paint_empty(painter)
+            away = self.tr("The figure is out of the picture. Press V or double-click to find it.")
+            self._paint_empty(painter, self._empty if pose is None else away)
         if self.hasFocus():
             painter.setPen(QPen(QColor(self._theme.tokens.accent), FOCUS))
             painter.setBrush(Qt.BrushStyle.NoBrush)
@@ -300,12 +301,12 @@ class Stage(QWidget):
         top = 0.0 if self._pose is None else self._names.list_height(room.width(), room.height(), self._pose)
         self._cameraman.frame(float(self.width()), self.height() - top - self._below(), top)
 
-    def _paint_empty(self, painter: QPainter) -> None:
+    def _paint_empty(self, painter: QPainter, words: str) -> None:
         aside = max(GAP_WIDE, (self.width() - FORM_WIDTH / 2 * self._theme.text_scale) / 2)
         room = QRectF(self.rect()).adjusted(aside, GAP_WIDE, -aside, -GAP_WIDE)
         painter.setFont(self._font)
         painter.setPen(QColor(self._theme.tokens.muted))
-        painter.drawText(room, Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap, self._empty)
+        painter.drawText(room, Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap, words)
 
     def _facing(self, pose: StagePose) -> str:
         camera = self.camera
