@@ -3,6 +3,8 @@
 from collections import Counter, defaultdict
 from dataclasses import dataclass
 
+import numpy as np
+
 from studio.acquisition.dialects.dialect import Reading
 from studio.acquisition.dialects.receiver_frames import OrderFrames, ReceiverFrames, Status, TagCommand, encode_command
 from studio.acquisition.synthetic.errors_table import ErrorTable
@@ -10,7 +12,9 @@ from studio.acquisition.synthetic.suit import Suit
 from studio.acquisition.synthetic.words import read_words
 from studio.acquisition.tracker import Event, LinkTracker
 from studio.core.body import Place
-from studio.core.sample import Sample, SensorId
+from studio.core.sample import Flag, Sample, SensorId
+
+WIRE_RESOLUTION = np.radians(0.0086)  # of smallest three (PROTOCOL.md, section 2.2)
 
 
 @dataclass
@@ -64,3 +68,15 @@ class Listener:
 def listen(words: str, seconds: float, errors: ErrorTable | None = None) -> Listened:
     """Return what a suit said in so many seconds."""
     return Listener(words, errors).hear(seconds)
+
+
+def measured(samples: list[Sample]) -> list[Sample]:
+    """Return those that carry gyroscope and accelerometer."""
+    return [sample for sample in samples if not sample.flags & Flag.FILLED]
+
+
+def frames_of(heard: Listened, place: Place) -> tuple[list[Sample], np.ndarray]:
+    """Return the samples of a tag and when they were taken, s since switching on: frame after frame from 0 on."""
+    samples = heard.samples[heard.sensor(place)]
+    count = np.array([sample.frame for sample in samples])
+    return samples, (count - count[0]) * heard.suit.options.frame_s

@@ -1,43 +1,20 @@
 """Simulated tags say what tags on that body would say: geometry, then the printed errors, then the wire."""
 
-import struct
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
-from studio.acquisition.dialects.tag_advert import ALL_TAGS, Command
 from studio.acquisition.synthetic.errors_table import (
-    CALIBRATED,
-    DATA_SHEET,
-    DEGREE,
     NO_ERRORS,
-    RESIDUAL_AXES,
-    RESIDUAL_GAIN,
-    RESIDUAL_OFFSET,
 )
-from studio.acquisition.synthetic.firmware import running_product
 from studio.acquisition.synthetic.suit import Suit
 from studio.acquisition.synthetic.words import read_words
 from studio.core import rotation
 from studio.core.body import PLACES, Place
 from studio.core.frames import GRAVITY, UP
-from studio.core.sample import Flag, Sample
-from tests.acquisition.synthetic_suit import Listened, Listener, listen
-
-WIRE_RESOLUTION = np.radians(0.0086)  # of smallest three (PROTOCOL.md, section 2.2)
-
-
-def measured(samples: list[Sample]) -> list[Sample]:
-    """Return those that carry gyroscope and accelerometer."""
-    return [sample for sample in samples if not sample.flags & Flag.FILLED]
-
-
-def frames_of(heard: Listened, place: Place) -> tuple[list[Sample], np.ndarray]:
-    """Return the samples of a tag and when they were taken, s since switching on: frame after frame from 0 on."""
-    samples = heard.samples[heard.sensor(place)]
-    count = np.array([sample.frame for sample in samples])
-    return samples, (count - count[0]) * heard.suit.options.frame_s
+from studio.core.sample import Flag
+from tests.acquisition.synthetic_suit import WIRE_RESOLUTION, frames_of, listen, measured
 
 
 @pytest.mark.parametrize("script", ["walk", "reach", "turns"])
@@ -243,190 +220,3 @@ def test_facts_stand_in_for_one_frame_in_fifty():
         kinds = ["firmware" if "firmware" in facts else "who_am_i" for _, facts in told]
         assert set(pairwise(kinds)) == {("firmware", "who_am_i"), ("who_am_i", "firmware")}
         assert all(f"tag:{facts['serial']}" == heard.sensor(place) for _, facts in told)
-
-
-def test_every_tag_draws_its_own_errors_within_the_data_sheet():
-    suits = [Suit(read_words(f"walk?calibrated=0&seed={seed}")) for seed in range(20)]
-    matrices = np.concatenate([suit.chips.matrix for suit in suits])
-    offsets = np.concatenate([suit.chips.offset for suit in suits])
-
-    scale = np.diagonal(matrices, axis1=1, axis2=2) - 1.0
-    cross = matrices[:, ~np.eye(3, dtype=bool)]
-    for drawn, limit in ((scale, 0.03), (cross, 0.02), (np.degrees(offsets), 20.0)):
-        assert np.abs(drawn).max() <= limit
-        assert drawn.std() == pytest.approx(limit / np.sqrt(3.0), rel=0.1)  # uniform
-
-
-def test_an_uncalibrated_tag_at_rest_reads_its_offset_with_the_noise_of_the_data_sheet():
-    heard = listen("rest?calibrated=0", 60.0)
-
-    for row, place in enumerate(PLACES):
-        samples = measured(heard.samples[heard.sensor(place)])
-        rates = np.degrees([sample.rate for sample in samples])
-        offset = np.degrees(heard.suit.chips.offset[row])
-        assert np.abs(rates.mean(axis=0) - offset).max() < 0.15 + 0.16 * 0.3  # g-sensitivity 0.1 per axis; 0.3 K warmer
-        # the mean of two ticks of 0.05 °/s each, and the wire's 0.061 °/s
-        assert rates.std(axis=0) == pytest.approx(np.full(3, np.hypot(0.035, 0.025)), abs=0.03)
-        assert not samples[0].flags & (Flag.CALIBRATED | Flag.OFFSET_OK)
-
-
-def test_a_calibrated_tag_keeps_what_its_correction_leaves():
-    suits = [Suit(read_words(f"walk?calibrated=1&seed={seed}")) for seed in range(30)]
-    left, offsets = [], []
-    for suit in suits:
-        for row, tag in enumerate(suit.firmware.tags):
-            left.append(np.array(tag.correction.gain) @ suit.chips.matrix[row] - np.eye(3))
-            offsets.append(np.array(tag.correction.offset) - suit.chips.offset[row])
-    errors = np.array(left)
-
-    assert np.diagonal(errors, axis1=1, axis2=2).std() == pytest.approx(RESIDUAL_GAIN, rel=0.1)
-    assert errors[:, ~np.eye(3, dtype=bool)].std() == pytest.approx(RESIDUAL_AXES, rel=0.1)
-    assert np.array(offsets).std() == pytest.approx(RESIDUAL_OFFSET, rel=0.1)
-
-
-def test_a_calibrated_tag_at_rest_keeps_its_orientation_to_its_residual_offset_and_warmth():
-    heard = listen("rest?calibrated=1", 60.0)
-
-    for readings in heard.readings.values():
-        assert readings[0].flags & Flag.CALIBRATED
-        drift = np.degrees(rotation.angle_between(readings[0].orientation, readings[-1].orientation))
-        # SD 0.005 °/s per axis: 4 sigma 1.2°; warming 0.15 K on average at 0.16 °/s/K on three axes: 2.5°
-        assert drift < 4.0
-
-
-def test_the_tag_slides_on_the_skin_in_phase_with_the_joint_and_by_two_degrees_at_the_end_of_its_range():
-    suit = Suit(read_words("walk"))
-    times = np.arange(15.0, 17.0, 0.005)
-    carried = suit.scene.carried(times)
-    rigid = rotation.multiply(carried.orientation, suit.chips.segment_from_sensor)
-
-    slid = np.degrees(rotation.angle_between(rigid, suit.chips.sensors(times)[0]))
-    assert slid == pytest.approx(2.0 * np.abs(carried.excursion), abs=1e-6)
-    assert 0.8 < slid[:, PLACES.index(Place.RIGHT_SHANK)].max() < 1.0  # 60 of 135 degrees
-
-
-def test_a_reading_beyond_the_range_is_clipped_and_flagged():
-    fast = Listener("rest?tags=1", NO_ERRORS)
-    fast.suit.chips.offset[:] = np.radians([2500.0, 0.0, 0.0])
-    heard = fast.hear(1.0)
-
-    for sample in measured(heard.samples[heard.sensor(Place.HEAD)]):
-        assert np.degrees(sample.rate[0]) == pytest.approx(2000.0, abs=0.1)
-        assert sample.flags & Flag.CLIPPED
-
-
-def test_the_two_tables_differ_only_in_what_calibration_can_reach():
-    assert CALIBRATED.accel_scale < DATA_SHEET.accel_scale
-    assert CALIBRATED.gyro_per_g == pytest.approx(0.01 * DATA_SHEET.gyro_per_g)
-    assert (CALIBRATED.gyro_scale, CALIBRATED.gyro_offset) == (0.03, 20.0 * DEGREE)
-    assert CALIBRATED.soft_tissue == DATA_SHEET.soft_tissue == 2.0 * DEGREE
-
-
-def test_a_running_product_is_the_product_one_by_one():
-    turns = rotation.normalise(np.random.default_rng(1).normal(size=(37, 3, 4)))
-    expected = [turns[0]]
-    for turn in turns[1:]:
-        expected.append(rotation.multiply(expected[-1], turn))
-
-    assert running_product(turns) == pytest.approx(np.array(expected), abs=1e-12)
-
-
-def test_coefficients_are_told_when_asked():
-    listener = Listener("walk?tags=3&calibrated=1")
-    listener.hear(1.0)
-    listener.tell(ALL_TAGS, Command.REPORT_COEFFICIENTS)
-    heard = listener.hear(1.0)
-
-    for tag in heard.suit.firmware.tags:
-        assert heard.tracker.infos[heard.sensor(PLACES[tag.number - 1])].correction == tag.correction
-        assert tag.correction.gain[0][0] != 1.0
-
-
-def test_an_uncalibrated_tag_tells_the_identity():
-    listener = Listener("walk?tags=1&calibrated=0")
-    listener.tell(ALL_TAGS, Command.REPORT_COEFFICIENTS)
-    heard = listener.hear(1.0)
-
-    correction = heard.tracker.infos[heard.sensor(Place.HEAD)].correction
-    assert correction is not None
-    assert correction.offset == (0.0, 0.0, 0.0)
-    assert correction.gain == ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-
-
-def test_only_the_tag_that_is_addressed_obeys():
-    listener = Listener("walk?tags=3")
-    listener.tell(listener.suit.firmware.tags[1].serial, Command.ASSIGN_NUMBER, bytes([9]))
-    heard = listener.hear(1.0)
-
-    assert [heard.readings[heard.sensor(place)][0].number for place in PLACES[:3]] == [1, 9, 3]
-
-
-def test_the_offset_is_measured_at_rest_and_the_orientation_starts_anew():
-    listener = Listener("rest?tags=2&calibrated=0")
-    listener.hear(2.0)
-    listener.tell(ALL_TAGS, Command.MEASURE_OFFSET)
-    heard = listener.hear(10.5)
-
-    for place in PLACES[:2]:
-        last = heard.readings[heard.sensor(place)][-1]
-        assert last.flags & Flag.OFFSET_OK
-        # ten seconds at the offset's 0.005 °/s of noise from half a second, and 0.05 K at 0.16 °/s/K
-        assert np.degrees(2 * np.arccos(min(abs(last.orientation[0]), 1.0))) < 0.6
-
-
-def test_the_offset_is_not_measured_on_a_body_in_motion():
-    listener = Listener("walk?tags=2&calibrated=0")
-    listener.hear(15.0)
-    listener.tell(ALL_TAGS, Command.MEASURE_OFFSET)
-    heard = listener.hear(2.0)
-
-    assert not any(readings[-1].flags & Flag.OFFSET_OK for readings in heard.readings.values())
-
-
-def test_integrals_tell_the_whole_turns_of_the_box():
-    listener = Listener("turns?tags=4", NO_ERRORS)
-    listener.hear(9.0)
-    listener.tell(ALL_TAGS, Command.START_INTEGRALS)
-    heard = listener.hear(5.0)  # one turn, from 10.0 to 12.5 s
-
-    for readings in heard.readings.values():
-        facts = next(reading.facts for reading in reversed(readings) if reading.facts and "angle_x" in reading.facts)
-        swept = np.linalg.norm([float(facts[f"angle_{axis}"]) for axis in "xyz"])
-        assert np.degrees(swept) == pytest.approx(360.0, abs=4.0)  # the hand stops at 1° SD and wobbles
-        assert int(facts["samples"]) == pytest.approx(5.0 * 200, abs=8)
-
-    listener.tell(ALL_TAGS, Command.STREAM)
-    heard = listener.hear(0.5)
-    assert all(np.isfinite(readings[-2].rate[0]) or readings[-2].facts for readings in heard.readings.values())
-
-
-def test_a_coefficient_is_set_and_survives_a_reboot_only_when_saved():
-    listener = Listener("rest?tags=2&reboot=3@head&calibrated=0")
-    head, chest = listener.suit.firmware.tags
-    for row, value in ((0, 0.25), (3, 1.02)):
-        listener.tell(ALL_TAGS, Command.COEFFICIENT, struct.pack("<Bf", row, value))
-    listener.hear(1.0)
-    assert head.correction.offset[0] == 0.25
-    assert head.correction.gain[0][0] == pytest.approx(1.02)
-
-    listener.hear(4.0)
-    assert head.correction.gain[0][0] == 1.0
-    assert chest.correction.gain[0][0] == pytest.approx(1.02)
-
-
-def test_saved_coefficients_survive_a_reboot():
-    listener = Listener("rest?tags=1&reboot=3&calibrated=0")
-    listener.tell(ALL_TAGS, Command.COEFFICIENT, struct.pack("<Bf", 3, 1.02))
-    listener.tell(ALL_TAGS, Command.SAVE)
-    listener.hear(5.0)
-
-    assert listener.suit.firmware.tags[0].correction.gain[0][0] == pytest.approx(1.02)
-
-
-@pytest.mark.parametrize("value", [float("nan"), float("inf"), 1e30])
-def test_a_coefficient_no_chip_needs_is_not_taken(value):
-    listener = Listener("rest?tags=1&calibrated=0")
-    listener.tell(ALL_TAGS, Command.COEFFICIENT, struct.pack("<Bf", 3, value))
-
-    assert listener.suit.firmware.tags[0].correction.gain[0][0] == 1.0
-    assert not listener.hear(0.5).malformed
