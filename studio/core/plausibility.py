@@ -7,12 +7,13 @@ shows is a doubt and no proof, because headings drift: it becomes a note.
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from studio.core import rotation
-from studio.core.body import REFERENCE_POSES, SEGMENT_OF, Place, reference_pose
+from studio.core.body import ARMS, REFERENCE_POSES, SEGMENT_OF, Place, reference_pose
 from studio.core.errors import PoseNotHeld
 from studio.core.frames import UP
 from studio.core.hold import Hold
@@ -29,18 +30,11 @@ MOST = 0.8  # of the limbs
 FEWEST = 3  # limbs; two tags may have been exchanged
 OTHER_POSE = math.radians(45.0)  # a trunk that leans by more was not upright
 BENT_BACKWARDS = math.radians(20.0)
+THINNING = 5  # frames
 LONG_ENOUGH = 0.5  # s in all
 LEANING, CROUCHED = math.radians(20.0), math.radians(30.0)  # trunk and knees; nobody does that most of the time
 
 _TRUNK = (Place.HEAD, Place.CHEST, Place.PELVIS)
-_ARMS = (
-    Place.LEFT_UPPER_ARM,
-    Place.RIGHT_UPPER_ARM,
-    Place.LEFT_FOREARM,
-    Place.RIGHT_FOREARM,
-    Place.LEFT_HAND,
-    Place.RIGHT_HAND,
-)
 _KNEES = ((Place.LEFT_THIGH, Place.LEFT_SHANK), (Place.RIGHT_THIGH, Place.RIGHT_SHANK))
 _ELBOWS = ((Place.LEFT_UPPER_ARM, Place.LEFT_FOREARM), (Place.RIGHT_UPPER_ARM, Place.RIGHT_FOREARM))
 _NAMES = {Place.LEFT_SHANK: "left knee", Place.RIGHT_SHANK: "right knee"} | {
@@ -76,8 +70,9 @@ def misheld(alignment: Alignment, pose: str, holds: Mapping[Place, Hold]) -> set
     return found
 
 
-def doubts(motion: Motion) -> tuple[str, ...]:
+def doubts(whole: Motion) -> tuple[str, ...]:
     """Return notes on a motion that hardly any body makes."""
+    motion = _thinned(whole)
     notes = []
     backwards = [
         f"{_NAMES[child]} by up to {math.degrees(most):.0f}°"
@@ -95,10 +90,24 @@ def doubts(motion: Motion) -> tuple[str, ...]:
     return tuple(notes)
 
 
+def _thinned(motion: Motion) -> Motion:
+    """Return some rows of a motion: bending is slow, and half an hour of it is large."""
+    rows = slice(None, None, THINNING)
+    return replace(
+        motion,
+        time=motion.time[rows],
+        frame_s=motion.frame_s * THINNING,
+        world_from_segment=motion.world_from_segment[rows],
+        hips=motion.hips[rows],
+        measured={place: there[rows] for place, there in motion.measured.items()},
+        lost={place: there[rows] for place, there in motion.lost.items()},
+    )
+
+
 def _refuse_raised_arms(first: Mapping[Place, Hold], bow: Mapping[Place, Hold]) -> None:
     tilts = {place: _angle(first[place].up(), hold.up()) for place, hold in bow.items() if place in first}
     trunk = [tilts[place] for place in _TRUNK if place in tilts]
-    raised = tuple(place.value for place in _ARMS if tilts.get(place, 0.0) > RAISED)
+    raised = tuple(place.value for place in ARMS if tilts.get(place, 0.0) > RAISED)
     if trunk and max(trunk) < UPRIGHT and len(raised) > 1:
         raise PoseNotHeld("bow", raised, "t")
 
