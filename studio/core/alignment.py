@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from studio.core import rotation
-from studio.core.body import REFERENCE_POSES, SEGMENT_OF, Place, reference_pose
+from studio.core.body import ARMS, REFERENCE_POSES, SEGMENT_OF, Place, reference_pose
 from studio.core.errors import AlignmentError, HeadingsUnknown, MovedDuringHold, NoSensorWorn, PoseMissing, PoseTooShort
 from studio.core.facing import facing_from_hinges
 from studio.core.frames import UP
@@ -35,18 +35,7 @@ STRAP_CONTRADICTION = math.radians(45.0)  # gravity disagrees by more: the tag d
 
 # The way each segment turns about its right axis in the bow: trunk, head, shanks and (heels lifted) feet
 # tip forwards (negative), arms and thighs are lifted forwards (positive).
-_LIFTED = frozenset(
-    {
-        Place.LEFT_UPPER_ARM,
-        Place.RIGHT_UPPER_ARM,
-        Place.LEFT_FOREARM,
-        Place.RIGHT_FOREARM,
-        Place.LEFT_HAND,
-        Place.RIGHT_HAND,
-        Place.LEFT_THIGH,
-        Place.RIGHT_THIGH,
-    }
-)
+_LIFTED = frozenset({*ARMS, Place.LEFT_THIGH, Place.RIGHT_THIGH})
 
 NO_MOUNTING: Quaternion = (1.0, 0.0, 0.0, 0.0)
 

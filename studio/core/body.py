@@ -40,6 +40,9 @@ class Place(Enum):
 
 PLACES: tuple[Place, ...] = tuple(Place)
 
+ARMS: tuple[Place, ...] = PLACES[2:8]
+"""Upper arms, forearms and hands."""
+
 PRESETS: dict[str, tuple[Place, ...]] = {"full": PLACES, "upper": PLACES[:8], "lower": PLACES[8:]}
 """Paper 003, experiment 1: full body 15, upper body #1-8, lower body #9-15."""
 
