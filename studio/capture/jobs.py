@@ -170,12 +170,13 @@ def _spans(poses: Sequence[Mark]) -> str:
     return ", ".join(f"{mark.label} {mark.time:.1f} to {np.fmax(mark.end, mark.time):.1f} s" for mark in poses)
 
 
-def keep(folder: Path, key: str, motion: Motion) -> None:
-    """Keep a motion in ``derived/``; a library that cannot be written is no reason to fail."""
+def keep(folder: Path, key: str, motion: Motion) -> bool:
+    """Keep a motion in ``derived/`` and return whether that was possible: not in a library that cannot be written."""
     try:
         save_motion(folder, key, motion)
     except OSError:
-        return
+        return False
+    return True
 
 
 def _calibrations(choice: str, take: Take) -> Mapping[SensorId, Calibration] | None:

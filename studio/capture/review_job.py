@@ -3,11 +3,11 @@
 from pathlib import Path
 from typing import NamedTuple
 
-from studio.capture.jobs import Progress, SolveRequest, load
+from studio.capture.jobs import Progress, SolveRequest, keep, load
 from studio.core.pose import Motion
 from studio.core.solver import solve
 from studio.core.take import Mark
-from studio.storage.motion_file import load_motion, save_motion
+from studio.storage.motion_file import load_motion
 
 
 class Solved(NamedTuple):
@@ -34,9 +34,6 @@ def run_review(request: SolveRequest, progress: Progress) -> Solved:
     if kept is not None:
         return Solved(request.take, loaded.key, None, loaded.take.marks)
     motion = solve(loaded.take, loaded.options).motion
-    try:
-        save_motion(request.take, loaded.key, motion)
-    except OSError:
-        return Solved(request.take, loaded.key, motion, loaded.take.marks)
+    is_kept = keep(request.take, loaded.key, motion)
     progress("solve", 1.0)
-    return Solved(request.take, loaded.key, None, loaded.take.marks)
+    return Solved(request.take, loaded.key, None if is_kept else motion, loaded.take.marks)

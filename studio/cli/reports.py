@@ -11,6 +11,7 @@ from studio.analysis.ledger import SensorLedger, ledger
 from studio.capture.jobs import SolveReport
 from studio.capture.truth import TruthReport
 from studio.core.take import Take
+from studio.export.sidecar import facts_of
 from studio.storage.facts import to_json
 from studio.storage.take_reader import ReadReport
 
@@ -30,15 +31,10 @@ def inspection(take: Take, report: ReadReport, truth: TruthReport | None) -> dic
     """Return what ``inspect --json`` prints."""
     content: dict[str, Any] = {
         "take": {
-            "name": take.name,
-            "person": take.person,
-            "source": take.source,
-            "started": take.started,
-            "duration_s": take.duration(),
+            **facts_of(take),
             "recovered": report.recovered,
             "damaged_blocks": report.damaged,
             "samples": report.samples,
-            "versions": dict(take.versions),
         },
         "setup": msgspec.json.decode(to_json(take.setup)),
         "marks": msgspec.json.decode(to_json(list(take.marks))),

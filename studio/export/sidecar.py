@@ -31,15 +31,7 @@ def sidecar(take: Take, motion: Motion | None, of_the_file: Mapping[str, Any]) -
     assignment = take.setup.assignment
     content: dict[str, Any] = {
         "made_by": {"program": PROGRAM, "version": studio.__version__},
-        "take": {
-            "name": take.name,
-            "person": take.person,
-            "source": take.source,
-            "started": take.started,
-            "duration_s": take.duration(),
-            "versions": dict(take.versions),
-            "samples_sha256": digest_of(take),
-        },
+        "take": {**facts_of(take), "samples_sha256": digest_of(take)},
         "body": {"stature_m": take.setup.stature, "stature_known": take.setup.stature_known},
         "sensors": [_sensor(take, *pair) for pair in zip(take.streams, ledger(take), strict=True)],
         "places_without_sensor": [place.value for place in PLACES if place not in assignment.sensors],
@@ -59,6 +51,18 @@ def sidecar(take: Take, motion: Motion | None, of_the_file: Mapping[str, Any]) -
 def as_text(content: Mapping[str, Any]) -> bytes:
     """Return JSON in UTF-8, with null for numbers that are unknown."""
     return (json.dumps(_finite(content), ensure_ascii=False, allow_nan=False, indent=2) + "\n").encode()
+
+
+def facts_of(take: Take) -> dict[str, Any]:
+    """Return what identifies a take, as JSON: who, from where, when, how long."""
+    return {
+        "name": take.name,
+        "person": take.person,
+        "source": take.source,
+        "started": take.started,
+        "duration_s": take.duration(),
+        "versions": dict(take.versions),
+    }
 
 
 def digest_of(take: Take) -> str:

@@ -3,12 +3,13 @@
 import contextlib
 import inspect
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Literal, TypeVar
 
 import msgspec
 
-from studio.core.errors import SetupError
+from studio.core.errors import SetupError, WrittenByNewerStudio
 from studio.storage.facts import NOT_JSON, from_json, to_json
 from studio.storage.filesystem import FILES, FileSystem, write_atomically
 
@@ -37,6 +38,27 @@ def load(file: Path, kind: type[T], schema: int) -> tuple[T | None, State]:
         return None, "missing"
     except (*NOT_JSON, SetupError, OSError):  # SetupError: two sensors on one place
         return None, "damaged"
+
+
+def load_own(file: Path, kind: type[T], schema: int, what: str, is_sound: Callable[[T], bool]) -> T | None:
+    """Read a document of this computer; None when there is none or it is damaged, which is then kept aside.
+
+    Parameters
+    ----------
+    what : the document's name for people
+    is_sound : tells whether what it says can be; what cannot counts as damage
+
+    Raises
+    ------
+    WrittenByNewerStudio
+    """
+    document, state = load(file, kind, schema)
+    if state == "newer":
+        raise WrittenByNewerStudio(str(file), what, f"schema {schema}")
+    if state == "damaged" or (document is not None and not is_sound(document)):
+        set_aside(file)
+        return None
+    return document
 
 
 def set_aside(file: Path) -> None:

@@ -5,7 +5,6 @@ from typing import Any, Final
 
 import msgspec
 
-from studio.core.errors import WrittenByNewerStudio
 from studio.core.take import Assignment, Mounting
 from studio.storage import documents
 from studio.storage.filesystem import FOLDER_MODE
@@ -36,13 +35,7 @@ def load_person(library: Path, code: str) -> Person:
     PersonCodeInvalid, WrittenByNewerStudio
     """
     file = library / person_folder(code) / PERSON_JSON
-    person, state = documents.load(file, Person, SCHEMA)
-    if person is not None and person.stature is not None and not STATURES[0] <= person.stature <= STATURES[1]:
-        person, state = None, "damaged"
-    if state == "newer":
-        raise WrittenByNewerStudio(str(file), "person.json", f"schema {SCHEMA}")
-    if state == "damaged":
-        documents.set_aside(file)
+    person = documents.load_own(file, Person, SCHEMA, PERSON_JSON, _is_plausible)
     return Person() if person is None else person
 
 
@@ -61,6 +54,10 @@ def save_person(library: Path, code: str, person: Person) -> None:
         documents.save(folder / PERSON_JSON, person)
     except OSError as error:
         raise refusal_of(folder) from error
+
+
+def _is_plausible(person: Person) -> bool:
+    return person.stature is None or STATURES[0] <= person.stature <= STATURES[1]
 
 
 def person_schema() -> dict[str, Any]:

@@ -7,7 +7,7 @@ import msgspec
 import platformdirs
 
 from studio.core.body import Place
-from studio.core.errors import CalibrationUnreadable, FolderNotWritable, WrittenByNewerStudio
+from studio.core.errors import CalibrationUnreadable, FolderNotWritable
 from studio.core.sample import SensorId
 from studio.core.take import Calibration
 from studio.storage import documents
@@ -48,14 +48,7 @@ def load_tag(sensor: SensorId, folder: Path) -> Tag:
     ------
     WrittenByNewerStudio
     """
-    file = _file(sensor, folder)
-    tag, state = documents.load(file, Tag, SCHEMA)
-    if tag is not None and not _are_plausible(tag.calibrations):
-        tag, state = None, "damaged"
-    if state == "newer":
-        raise WrittenByNewerStudio(str(file), "tag", f"schema {SCHEMA}")
-    if state == "damaged":
-        documents.set_aside(file)
+    tag = documents.load_own(_file(sensor, folder), Tag, SCHEMA, "tag", lambda tag: _are_plausible(tag.calibrations))
     return Tag() if tag is None else tag
 
 

@@ -8,7 +8,12 @@ import jsonschema
 import pytest
 
 from studio.core.body import Place
-from studio.core.errors import CalibrationUnreadable, FolderNotWritable, PersonCodeInvalid, WrittenByNewerStudio
+from studio.core.errors import (
+    CalibrationUnreadable,
+    FolderIsFile,
+    PersonCodeInvalid,
+    WrittenByNewerStudio,
+)
 from studio.core.sample import Correction
 from studio.core.take import Alignment, Assignment, Calibration, CarriedAlignment, LimbAlignment, Mark, Setup
 from studio.storage.person_file import Person, load_person, person_schema, save_person
@@ -160,7 +165,7 @@ def test_a_person_of_a_newer_studio_is_not_overwritten(tmp_path: Path) -> None:
 def test_a_person_cannot_be_kept_where_nothing_can_be_written(tmp_path: Path) -> None:
     (tmp_path / "P014").write_text("a file where a folder should be")
 
-    with pytest.raises(FolderNotWritable):
+    with pytest.raises(FolderIsFile):
         save_person(tmp_path, "P014", Person())
 
 
