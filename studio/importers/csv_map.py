@@ -18,6 +18,7 @@ from studio.core.sample import SensorInfo
 from studio.core.take import Assignment, Mark, Setup, Take
 from studio.importers.clock import count_frames, median_interval, put_in_order
 from studio.importers.map_file import Accelerometer, Column, Gyroscope, Map, Sensor, read_map
+from studio.importers.plausible_units import doubt_acceleration, doubt_rate
 from studio.importers.streams import Measured, line_up
 from studio.importers.table import Rows, Table, open_table
 
@@ -153,6 +154,7 @@ def _measure(source: _Source, map_file: Path) -> Measured:
     orientation, refused = _orient(source, quantities.get("orientation"), len(values), map_file)
     rate = _turn(sensor, sensor.gyroscope, quantities.get("gyroscope"), len(values))
     acceleration = _turn(sensor, sensor.accelerometer, quantities.get("accelerometer"), len(values))
+    _check_units(source, values[:, 0] * unit, rate, acceleration, frame_s, map_file)
     facts = {
         "rows_dropped": source.rows.dropped + order.dropped,
         "first_bad_line": source.rows.first_bad_line,
@@ -175,6 +177,26 @@ def _measure(source: _Source, map_file: Path) -> Measured:
     )
     unknown = np.full(len(values), np.nan)
     return Measured(info, frame, values[:, 0] * unit, orientation, rate, acceleration, unknown, unknown.copy())
+
+
+def _check_units(
+    source: _Source,
+    time: NDArray[np.float64],
+    rate: NDArray[np.float64],
+    acceleration: NDArray[np.float64],
+    frame_s: float,
+    map_file: Path,
+) -> None:
+    """Refuse numbers that cannot be what the map says they are."""
+    sensor, doubts = source.sensor, {}
+    if sensor.accelerometer:
+        doubts["accelerometer"] = doubt_acceleration(acceleration, frame_s, sensor.accelerometer.unit)
+    if sensor.gyroscope:
+        doubts["gyroscope"] = doubt_rate(time, rate, acceleration, frame_s, sensor.gyroscope.unit)
+    for quantity, doubt in doubts.items():
+        if doubt is not None:
+            reason = f"{source.where}.{quantity}.unit of {sensor.sensor!r}: {doubt}"
+            raise MapFileInvalid(str(map_file), reason)
 
 
 def _turn(

@@ -14,6 +14,7 @@ from msgspec import Meta
 from studio.core.body import DEFAULT_STATURE, Place
 from studio.core.errors import MapFileInvalid
 from studio.core.sample import SensorId
+from studio.importers.map_words import in_words
 from studio.importers.table import decode_text
 
 Column = Annotated[str, Meta(min_length=1)] | Annotated[int, Meta(ge=0)]
@@ -133,14 +134,17 @@ def read_map(path: Path) -> Map:
         With the JSON path of what is wrong in its reason.
     """
     try:
-        read = msgspec.json.decode(decode_text(path.read_bytes()).encode("utf-8", "replace"), type=Map)
+        text = decode_text(path.read_bytes()).encode("utf-8", "replace")
     except OSError as error:
         raise MapFileInvalid(str(path), (error.strerror or "it cannot be opened").lower()) from error
+    try:
+        read = msgspec.json.decode(text, type=Map)
     except RecursionError as error:
         raise MapFileInvalid(str(path), "$: nested too deeply") from error
     except msgspec.DecodeError as error:
-        message, _, where = str(error).partition(" - at `")
-        raise MapFileInvalid(str(path), f"{where.rstrip('`') or '$'}: {message[:1].lower()}{message[1:]}") from error
+        message, _, place = str(error).partition(" - at `")
+        where = place.rstrip("`") or "$"
+        raise MapFileInvalid(str(path), f"{where}: {in_words(message, where, text, schema())}") from error
     for where, reason in _contradictions(read):
         raise MapFileInvalid(str(path), f"{where}: {reason}")
     return read

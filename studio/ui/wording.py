@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 from studio.core import errors
 from studio.core.errors import StudioError
 
-LONGEST_FACT = 160  # characters; a longer path or reason is cut in the middle, so that its end can be read
+LONGEST_FACT = 240  # characters, the names of all places; a longer path or reason is cut in the middle, so that its end can be read
 LONGEST_LIST = 6  # names; the rest is counted
 
 POSES = {"n": "N-pose", "t": "T-pose", "bow": "bow", "sit": "sitting pose"}
