@@ -5,20 +5,14 @@ translator sees sentences and not pieces. Words that come from files, ports or p
 control characters and shortened, because anybody may have written them.
 """
 
-import math
 import string
-import unicodedata
 from collections.abc import Callable
 from dataclasses import fields
 from typing import Any, NamedTuple
 
 from studio.core import errors
 from studio.core.errors import StudioError
-
-LONGEST_FACT = 240  # characters, the names of all places; a longer path or reason is cut in the middle, so that its end can be read
-LONGEST_LIST = 6  # names; the rest is counted
-
-POSES = {"n": "N-pose", "t": "T-pose", "bow": "bow", "sit": "sitting pose"}
+from studio.ui.fact_words import in_words
 
 
 class Message(NamedTuple):
@@ -34,7 +28,7 @@ class Message(NamedTuple):
 def sentences(error: StudioError) -> Message:
     """Return what to show for ``error``, with its facts filled in."""
     template = TEMPLATES[message_id(error)]
-    facts = {field.name: _in_words(field.name, getattr(error, field.name)) for field in fields(error)}
+    facts = {field.name: in_words(field.name, getattr(error, field.name)) for field in fields(error)}
     what, why, do = (_filled(part, facts) for part in template[1:])
     return Message(template.id, what, why, do)
 
@@ -59,53 +53,6 @@ def _filled(template: str, facts: dict[str, str]) -> str:
 def placeholders(template: str) -> set[str]:
     """Return the names of the facts that ``template`` asks for."""
     return {name for _, name, _, _ in string.Formatter().parse(template) if name}
-
-
-def _in_words(name: str, fact: Any) -> str:
-    if isinstance(fact, tuple):
-        return _listed([_in_words(name, part) for part in fact])
-    if isinstance(fact, float):
-        return _number_in_words(name, fact)
-    if isinstance(fact, int):
-        return f"{fact:,}"
-    text = _readable(str(fact))
-    if name in ("place", "places"):
-        return text.replace("_", " ")
-    return POSES.get(text, text) if name in ("pose", "held") else text
-
-
-def _number_in_words(name: str, value: float) -> str:
-    if name == "degrees":
-        return f"{value:.1f}°" if math.isfinite(value) else "an unknown angle"
-    return duration(value)
-
-
-def duration(seconds: float) -> str:
-    """Return a time span as people say it: ``0.4 s``, ``12 min 04.3 s``."""
-    if not math.isfinite(seconds):
-        return "an unknown time"
-    tenths = round(abs(seconds) * 10)
-    minutes, rest = divmod(tenths, 600)
-    sign = "-" if seconds < 0 and tenths else ""
-    return f"{sign}{minutes} min {rest / 10:04.1f} s" if minutes else f"{sign}{rest / 10:.1f} s"
-
-
-def _readable(text: str) -> str:
-    # Category C holds control, format (also the marks that turn the reading direction) and unassigned characters.
-    kept = "".join(" " if character.isspace() else character for character in text)
-    kept = "".join(character for character in kept if unicodedata.category(character)[0] != "C").strip()
-    if len(kept) > LONGEST_FACT:
-        half = LONGEST_FACT // 2
-        kept = f"{kept[:half]}…{kept[-half:]}"
-    return kept or "(nothing)"
-
-
-def _listed(names: list[str]) -> str:
-    if not names:
-        return "(nothing)"
-    if len(names) > LONGEST_LIST:
-        return f"{', '.join(names[:LONGEST_LIST])} and {len(names) - LONGEST_LIST} more"
-    return f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else names[0]
 
 
 def _by_id(*messages: Message) -> dict[str, Message]:

@@ -11,7 +11,8 @@ import pytest
 from studio.core.errors import MapFileInvalid
 from studio.importers.csv_map import read_csv
 from studio.importers.xio import read_xio
-from studio.ui.wording import LONGEST_FACT, one_line
+from studio.ui.fact_words import LONGEST_FACT
+from studio.ui.wording import one_line
 
 SAMPLE = Path(__file__).resolve().parents[2] / "resources" / "samples" / "xio-lower-body"
 IN_FILE = {"deg/s": 1.0, "rad/s": np.radians(1.0), "g": 1.0, "m/s2": 9.80665, "mg": 1000.0}

@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 
 from studio.core import errors
 from studio.core.errors import DiskFull, MovedDuringHold, NoData, PersonCodeInvalid, PortBusy, StudioError
-from studio.ui.wording import MESSAGE_OF, TEMPLATES, duration, one_line, placeholders, sentences
+from studio.ui.fact_words import duration
+from studio.ui.wording import MESSAGE_OF, TEMPLATES, one_line, placeholders, sentences
 
 JARGON = re.compile(
     r"\b(exceptions?|tracebacks?|stack|null|none type|nan|inf|parsing|parsed?|invalid|illegal|abort(ed)?|fatal|"

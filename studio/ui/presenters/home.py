@@ -8,12 +8,12 @@ from PySide6.QtCore import QObject, Signal
 from studio.capture.library import import_into
 from studio.core.errors import StudioError
 from studio.storage.take_summary import TakeSummary
+from studio.ui.fact_words import duration
 from studio.ui.models.studio_model import StudioModel
 from studio.ui.presenters.folders import choose_folder, show_folder
 from studio.ui.presenters.notices import Notices
 from studio.ui.settings import Settings
 from studio.ui.views.home_page import HomePage, Recovered
-from studio.ui.wording import duration
 
 SAMPLE = Path(__file__).resolve().parents[3] / "resources" / "samples" / "xio-lower-body"
 SAMPLE_PERSON = "SAMPLE1"

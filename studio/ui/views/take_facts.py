@@ -6,9 +6,9 @@ from PySide6.QtCore import QCoreApplication
 
 from studio.core.body import Place
 from studio.core.take import HeadingSource
+from studio.ui.fact_words import POSES, duration
 from studio.ui.models.playhead import clock
 from studio.ui.models.take_review import TakeReview, heading_sources
-from studio.ui.wording import POSES, duration
 
 MOST_NAMED = 4  # places; more are counted
 _STRONGEST_FIRST: tuple[HeadingSource, ...] = ("bow", "two poses", "common world", "strap rule", "unknown")

@@ -21,11 +21,11 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QAbstractSlider, QSizePolicy, QWidget
 
 from studio.core.take import Mark
+from studio.ui.fact_words import POSES
 from studio.ui.models.playhead import LONG_STEP, Playhead, clock
 from studio.ui.models.take_review import Stretch, TakeReview, envelope, gaps, in_words, lost_share, side_of
 from studio.ui.style_sheet import mixed
 from studio.ui.theme import FOCUS, GAP, GRID, RADIUS, Theme
-from studio.ui.wording import POSES
 
 BAND = 48  # px, height of the envelope
 COLUMN = 2  # px, width of one column of the envelope
