@@ -100,6 +100,11 @@ class LiveSession:
         self._newest_sensor, self._newest, self._heard = math.inf, -math.inf, -math.inf
         self._solver = Solver(self.setup, self._attitude, self._calibrations(self.setup), HISTORY)
 
+    def forget_body(self) -> None:
+        """Forget the body calibration: somebody else wears the sensors."""
+        self._body.clear()
+        self._solver.forget_body()
+
     async def sensors_known(self, patience: float = PATIENCE) -> None:
         """Wait until sensors send and no new one has appeared for half a second.
 

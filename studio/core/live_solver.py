@@ -68,6 +68,10 @@ class Solver:
         self._tracks[info.sensor] = LiveTrack(info, self._attitude, self._calibrations.get(info.sensor))
         self._history[info.sensor] = Rows(12)
 
+    def forget_body(self) -> None:
+        """End the alignment: frames are no poses until there is another one."""
+        self._alignment = None
+
     def adopt(self, setup: Setup, arrived: Iterable[Sample]) -> None:
         """Put another setup in force; other places on the body end the alignment, what each sensor did stays.
 

@@ -60,7 +60,8 @@ class LiveShow(QObject):
         joints = skeleton.joint_positions(pose.world_from_segment, pose.hips)
         silent = self.silent()
         known = frozenset(p for p, limb in alignment.limbs.items() if limb.source != "unknown") - frozenset(silent)
-        return StagePose(pose.world_from_segment, joints, known, silent)
+        caption = self.tr("Simulated performer") if self._model.is_simulated else ""
+        return StagePose(pose.world_from_segment, joints, known, silent, caption)
 
     def forget_newest(self) -> None:
         """Bring the newest pose once more: another figure shows it."""
@@ -128,8 +129,12 @@ class LiveShow(QObject):
         problems = [Problem(stopped.format(place=words), connect, "connect") for words in self.silent().values()]
         if not model.connecting and not model.setup.assignment.sensors:
             problems.append(Problem(self.tr("No sensor has a place on the body."), self.tr("Assign"), "assign"))
-        elif not model.connecting and model.alignment is None:
+        elif model.alignment is None:
             problems.append(Problem(self.tr("The body is not calibrated."), self.tr("Calibrate"), "calibrate"))
+        elif unknown := sum(limb.source == "unknown" for limb in model.alignment.limbs.values()):
+            words = self.tr("{n} of {all} limbs face an unknown way: the bow is missing.")
+            said = words.format(n=unknown, all=len(model.alignment.limbs))
+            problems.append(Problem(said, self.tr("Calibrate"), "calibrate"))
         heard = [told for told in model.health.values() if told.received]
         if heard and max(told.loss for told in heard) > LOSS_WORTH_SAYING:
             problems.append(Problem(self.tr("More than 5 % of the packets are lost."), connect, "connect"))

@@ -206,6 +206,7 @@ class StudioWindow(QObject):
         recorder.close_asked.connect(window.ask_before_close)
         recorder.close_ready.connect(window.close_now)
         model.refused.connect(self.notices.refuse)
+        model.person_changed.connect(self._on_person)
         model.source_refused.connect(self._on_source_refused)
         model.sensors_changed.connect(self._show_sensors)
         model.setup_changed.connect(self._show_sensors)
@@ -352,12 +353,19 @@ class StudioWindow(QObject):
     def _on_bad(self, folder: Path) -> None:
         self.review.judge(folder, "bad")
 
+    def _on_person(self) -> None:
+        self.holds.hold.reset()
+        self.holds.changed.emit()
+        self.angles.reset()
+        self.assignment.adopt(self.model.setup.assignment)
+
     def _connect(self) -> None:
         self.go_to("connect")
 
     def _on_own_sensors(self) -> None:
         if self.model.source.startswith("synthetic"):
             self.model.close_source()
+        self.connect_page.choice.set_kind("serial")
         self.go_to("connect")
 
     def _on_export(self, takes: tuple[TakeSummary, ...]) -> None:
@@ -368,4 +376,5 @@ class StudioWindow(QObject):
         self.go_to("review")
 
     def _on_calibrated(self, _: object) -> None:
+        self.angles.reset()
         self.go_to("capture")

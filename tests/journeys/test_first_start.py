@@ -153,7 +153,39 @@ def test_a_note_that_is_being_written_when_the_window_closes_is_kept(qtbot, tmp_
         qtbot.waitUntil(lambda: studio.review_page.takes.model.total == 1, timeout=SLOW)
         folder = studio.review_page.takes.model.newest()[0].folder
         studio.review_take(folder)
-        qtbot.waitUntil(lambda: studio.review_page.measures.note.isEnabled(), timeout=SLOW)
+        qtbot.waitUntil(studio.review_page.measures.note.isEnabled, timeout=SLOW)
         studio.review_page.measures.note.setFocus()
         QTest.keyClicks(studio.review_page.measures.note, "pain on stairs")
     assert summarise(folder).notes == "pain on stairs"
+
+
+def test_a_simulated_take_never_stands_among_those_of_a_person(qtbot, tmp_path):
+    with running_studio(tmp_path, last_person="P014") as studio:
+        qtbot.waitUntil(lambda: has_body(studio), timeout=SLOW)
+        click(studio.window.strip.record)
+        qtbot.waitUntil(lambda: studio.recorder.phase is Phase.RECORDING, timeout=SLOW)
+        qtbot.wait(600)
+        click(studio.window.strip.record)
+        qtbot.waitUntil(lambda: studio.review_page.takes.model.total == 1, timeout=SLOW)
+        assert studio.review_page.takes.model.newest()[0].person == "P000"
+
+
+def test_a_window_without_a_recording_closes_at_the_first_press(qtbot, tmp_path):
+    with running_studio(tmp_path) as studio:
+        qtbot.waitUntil(lambda: has_body(studio), timeout=SLOW)
+        studio.window.close()
+        assert not studio.window.isVisible()
+
+
+def test_a_star_and_what_follows_it_at_once_are_both_kept(qtbot, tmp_path):
+    with running_studio(tmp_path) as studio:
+        click(studio.home_page.sample)
+        qtbot.waitUntil(studio.review_page.transport.play.isEnabled, timeout=2 * SLOW)
+        folder = studio.review_page.takes.model.newest()[0].folder
+        for _ in range(5):
+            studio.review.judge(folder, "star")
+            studio.review.judge(folder, "bad")
+        qtbot.waitUntil(lambda: summarise(folder).verdict == "bad", timeout=SLOW)
+        qtbot.wait(300)
+        assert summarise(folder).verdict == "bad"
+        assert not studio.window.banner.isVisible()

@@ -31,29 +31,36 @@ def hold(qtbot, studio, words):
     qtbot.waitUntil(lambda: studio.holds.hold.phase is HoldPhase.JUDGED, timeout=SLOW)
 
 
+def connected(qtbot, studio, port):
+    """Open the port by clicks; return when that was."""
+    click(studio.home_page.sensors)
+    page = studio.connect_page
+    page.offer_ports((Found(f"serial:{port}", "Receiver"),))  # a pseudo-terminal is in no list of ports
+    opened = time.perf_counter()
+    click(page.choice.go)
+    qtbot.waitUntil(lambda: len(studio.model.infos) == 15 and not studio.model.connecting, timeout=SLOW)
+    qtbot.waitUntil(lambda: page.sensors.rowCount() == 15, timeout=SLOW)
+    return opened
+
+
+def exchanged_and_back(qtbot, studio):
+    """Exchange shanks and feet, and think better of it."""
+    click(studio.window.rail.buttons["assign"])
+    assert len(studio.model.setup.assignment.sensors) == 15, "tag k belongs to place k until somebody says otherwise"
+    swapped = studio.model.setup.assignment
+    click(studio.assign_page.cross)
+    qtbot.waitUntil(lambda: studio.model.setup.assignment != swapped, timeout=SLOW)
+    click(studio.assign_page.undo)
+    qtbot.waitUntil(lambda: studio.model.setup.assignment == swapped, timeout=SLOW)
+
+
 def test_tags_are_connected_assigned_calibrated_and_captured(qtbot, tmp_path):
     with (
         suit(f"holds?seed=1&calibrated=1&ahead={AHEAD}", 60) as port,
         running_studio(tmp_path, source="", last_person="P014") as studio,
     ):
-        click(studio.home_page.sensors)
-        page = studio.connect_page
-        page.offer_ports((Found(f"serial:{port}", "Receiver"),))  # a pseudo-terminal is in no list of ports
-        opened = time.perf_counter()
-        click(page.choice.go)
-        qtbot.waitUntil(lambda: len(studio.model.infos) == 15 and not studio.model.connecting, timeout=SLOW)
-        qtbot.waitUntil(lambda: page.sensors.rowCount() == 15, timeout=SLOW)
-
-        click(studio.window.rail.buttons["assign"])
-        assert len(studio.model.setup.assignment.sensors) == 15, (
-            "tag k belongs to place k until somebody says otherwise"
-        )
-        swapped = studio.model.setup.assignment
-        click(studio.assign_page.cross)
-        qtbot.waitUntil(lambda: studio.model.setup.assignment != swapped, timeout=SLOW)
-        click(studio.assign_page.undo)
-        qtbot.waitUntil(lambda: studio.model.setup.assignment == swapped, timeout=SLOW)
-
+        opened = connected(qtbot, studio, port)
+        exchanged_and_back(qtbot, studio)
         click(studio.window.rail.buttons["calibrate"])
         hold(qtbot, studio, "Start N-pose")
         assert studio.holds.outcome.moved == (), "the wearer stood still"
@@ -75,6 +82,12 @@ def test_tags_are_connected_assigned_calibrated_and_captured(qtbot, tmp_path):
         assert summary.lost == 0.0
         assert Place.LEFT_FOOT in summary.places
         assert (tmp_path / "takes" / "P014" / "person.json").is_file(), "who wears what is remembered"
+
+        studio.people.choose("P015")
+        qtbot.waitUntil(lambda: studio.model.person == "P015", timeout=SLOW)
+        qtbot.waitUntil(lambda: studio.model.buffer.newest()[1] is None, timeout=SLOW)
+        assert studio.model.alignment is None, "somebody else's body calibration stayed in force"
+        qtbot.waitUntil(lambda: studio.holds.outcome is None, timeout=SLOW)
 
         studio.review_take(summary.folder)
         qtbot.waitUntil(studio.review_page.transport.play.isEnabled, timeout=SLOW)

@@ -25,7 +25,9 @@ def controls(window: QWidget) -> list[QWidget]:
 
 
 def _is_part(child: QWidget, inner: tuple[type, ...]) -> bool:
-    return isinstance(child, inner) and isinstance(child.window(), QComboBox)
+    return isinstance(child.parent(), QAbstractSpinBox) or (
+        isinstance(child, inner) and isinstance(child.window(), QComboBox)
+    )
 
 
 def needs(widget):

@@ -21,6 +21,8 @@ CHOSEN = {
     "last_source": "serial:/dev/ttyACM0",
     "last_person": "P014",
     "last_preset": "bvh",
+    "export_folder": "/exports",
+    "take_name": "gait",
     "geometry": b"\x00\x01\xff geometry",
     "clicker": True,
     "keys": {"record": ("F9",), "marker": ()},

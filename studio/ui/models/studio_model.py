@@ -55,6 +55,8 @@ class StudioModel(QObject):
     """A sensor appeared, or more is known of one."""
     health_changed = Signal()
     setup_changed = Signal()
+    person_changed = Signal()
+    """Somebody else is captured: no body is calibrated, and nothing of the one before counts."""
     aligned = Signal(object)
     """An Alignment is in force."""
     alignment_refused = Signal(object)
@@ -117,6 +119,11 @@ class StudioModel(QObject):
         return self._session.setup
 
     @property
+    def is_simulated(self) -> bool:
+        """Whether the source is the simulated performer."""
+        return self.source.startswith("synthetic")
+
+    @property
     def is_recording(self) -> bool:
         """Whether samples are being kept."""
         return self._session.recording is not None
@@ -168,17 +175,23 @@ class StudioModel(QObject):
 
     def choose_person(self, code: str) -> None:
         """Capture another person: their stature and, where the source knows no body, what they wore last."""
+        if code == self.person:
+            return
         self.person = code
-        self._ask(self._meet(code), self._adopted)
+        if not self._knows_body:
+            self.alignment = None
+        self._ask(self._meet(code), self._met)
 
     def look_for_next_take(self) -> None:
         """Find out which number the next take will have."""
-        library, person = self.library, self.person
+        library, person = self.library, "" if self.is_simulated else self.person
         self.work(lambda: next_take(library, person), self._found_next_take)
 
     def start_recording(self, name: str) -> None:
         """Start a take."""
-        started = self._session.start_recording(self.library, self.person, name, self.source)
+        # Nobody wears the simulated suit: its takes never stand among a person's.
+        person = "" if self.is_simulated else self.person
+        started = self._session.start_recording(self.library, person, name, self.source)
         self._ask(started, _nothing, self.recording_failed.emit)
 
     def stop_recording(self) -> None:
@@ -268,6 +281,8 @@ class StudioModel(QObject):
 
     async def _meet(self, code: str) -> None:
         person = await asyncio.to_thread(load_person, self.library, code)
+        if not self._knows_body:
+            self._session.forget_body()
         if self._session.infos and not self._knows_body:
             known = setup_for(self._session.infos, None, person)
             self._session.adopt(replace(known, calibrations=self._session.setup.calibrations))
@@ -298,6 +313,7 @@ class StudioModel(QObject):
 
     def _connected(self, _: object) -> None:
         self.connecting = False
+        self.look_for_next_take()
         self.source_changed.emit()
         self.setup_changed.emit()
 
@@ -318,6 +334,10 @@ class StudioModel(QObject):
             self.source_refused.emit(error)
 
     def _adopted(self, _: object) -> None:
+        self.setup_changed.emit()
+
+    def _met(self, _: object) -> None:
+        self.person_changed.emit()
         self.setup_changed.emit()
 
     def _found_next_take(self, found: NextTake) -> None:

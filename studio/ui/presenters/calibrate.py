@@ -40,7 +40,8 @@ class CalibratePresenter(QObject):
             self._holds.cancel()
             return True
         if action == "go" and not self._holds.is_running:
-            self._holds.start()
+            if self._holds.hold.next_pose is not None:  # a calibration that is complete is not begun anew by a key
+                self._holds.start()
             return True
         return False
 

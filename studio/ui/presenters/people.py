@@ -45,6 +45,7 @@ class PeoplePresenter(QObject):
             self._notices.refuse(refusal)
             return
         if folder != NOBODY:
+            self._notices.withdraw("set.person")
             self._codes = tuple(sorted({*self._codes, folder}))
             self.choose(folder)
 

@@ -102,7 +102,7 @@ class AngleNumber(QWidget):
         painter.setFont(font)
         painter.setPen(QColor(theme.tokens.text))
         shown = self._shown
-        text = "–" if shown is None or not math.isfinite(shown.now) else f"{shown.now:.0f}°"
+        text = "–" if shown is None or not math.isfinite(shown.now) else f"{whole(shown.now)}°"
         height = float(painter.fontMetrics().height())
         painter.drawText(QRectF(0, top, self.width(), height), Qt.AlignmentFlag.AlignVCenter, text)
         return top + height
@@ -133,8 +133,8 @@ class AngleNumber(QWidget):
             painter.drawLine(QPointF(x(shown.now), bar.top() - 2), QPointF(x(shown.now), bar.bottom() + 2))
         painter.setFont(self._theme.font("caption"))
         painter.setPen(QColor(tokens.muted))
-        said = self.tr("{least:.0f}° to {most:.0f}°, range {range:.0f}°")
-        said = said.format(least=shown.least, most=shown.most, range=shown.range)
+        said = self.tr("{least}° to {most}°, range {range}°")
+        said = said.format(least=whole(shown.least), most=whole(shown.most), range=whole(shown.range))
         room = QRectF(0, bar.bottom() + GRID, self.width(), self._theme.pixels("caption") * 1.5)
         painter.drawText(room, Qt.AlignmentFlag.AlignVCenter, said)
 
@@ -144,3 +144,12 @@ class AngleNumber(QWidget):
         low, high = min(ends), max(ends)
         air = max(0.05 * (high - low), 0.5 * (SPAN - (high - low)), 0.0)
         return low - air, high + air
+
+
+def whole(degrees: float) -> str:
+    """Return whole degrees with a true minus, and never minus nothing."""
+    return (
+        f"{degrees + 0.0:.0f}".replace("-0", "0", 1).replace("-", "−")
+        if abs(degrees) < 0.5
+        else (f"{degrees:.0f}".replace("-", "−"))
+    )

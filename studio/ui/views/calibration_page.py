@@ -28,6 +28,7 @@ from studio.ui.views.hold_words import HoldWords
 from studio.ui.views.limb_table import LimbTable
 
 PANEL = 460  # px at 100 % text
+MOST_LIMBS = 2  # named on a button; more are counted
 SHARE = 0.58  # of the page that the panel may take when text is large
 
 
@@ -278,13 +279,17 @@ class CalibrationPage(QWidget):
         hold = model.hold
         judged = hold.phase is Phase.JUDGED and not model.is_running
         finished = hold.next_pose is None
-        self.accept.setVisible(judged and hold.alignment is not None)
+        self.accept.setVisible(judged and hold.alignment is not None and not failed)
+        self.accept.setText(self.tr("Accept") if finished else self.tr("Accept without the bow"))
+        self.accept.setAccessibleName(self.accept.text())
         self.repeat.setVisible(judged)
         moved = hold.outcome.moved if hold.outcome is not None else ()
         some = judged and bool(moved) and hold.alignment is not None
         self.repeat_some.setVisible(some)
         if some:
-            self.repeat_some.setText(self._said.repeat_only(moved))
+            words = self.tr("Repeat only {n} limbs").format(n=len(moved))
+            self.repeat_some.setText(words if len(moved) > MOST_LIMBS else self._said.repeat_only(moved))
+            self.repeat_some.setToolTip(self._said.repeat_only(moved))
             self.repeat_some.setAccessibleName(self.repeat_some.text())
         # One button is the obvious one: repeat what failed, else the next pose, else accept.
         rest_first = not self.sit.isHidden() and hold.outcome is None

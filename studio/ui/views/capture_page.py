@@ -201,6 +201,7 @@ class CapturePage(QWidget):
         self.name.setAccessibleName(self.tr("Name of the take"))
         self.name.setMaxLength(64)
         self.name.textChanged.connect(self.name_changed)
+        self.name.returnPressed.connect(self.name.clearFocus)  # R records again
         self.clock = QLabel(clock(0.0), self)
         self.clock.setAccessibleName(self.tr("Recording time"))
         self.record = QPushButton(self)

@@ -96,7 +96,9 @@ class ChosenTakes(QFrame):
         name.set_words(take.name)
         name.setProperty("role", "strong")
         facts = ElidedLabel(row)
-        facts.set_words(" · ".join(part for part in (length(take.duration_s), take.person, take.session) if part))
+        bad = self.tr("✖ bad take") if take.verdict == "bad" else ""
+        parts = (bad, length(take.duration_s), take.person, take.session)
+        facts.set_words(" · ".join(part for part in parts if part))
         facts.setProperty("role", "caption")
         cross = QPushButton(row)
         cross.setProperty("kind", "quiet")

@@ -61,6 +61,8 @@ class ExportPage(QWidget):
         self.start = QPushButton(self.tr("Export"), self)
         self.result = ExportResult(theme, self)
         self._names, self._estimate, self._warning = QLabel(self), QLabel(self), QLabel(self)
+        self._confirmed: tuple[Path, ...] = ()
+        """What somebody was told will be replaced."""
         self._build()
         self._wire()
         self.restyle()
@@ -73,7 +75,9 @@ class ExportPage(QWidget):
 
     def show_done(self, files: Sequence[Path], notes: Sequence[str] = ()) -> None:
         """Show the files that were written and checked."""
+        self._confirmed = ()
         self._set_busy(on=False)
+        self.refresh()
         self.result.show_done(files, notes)
 
     def show_refusal(self, error: StudioError) -> None:
@@ -251,6 +255,7 @@ class ExportPage(QWidget):
         self.rate.currentIndexChanged.connect(self._on_rate)
         self.excel.toggled.connect(choice.set_for_excel)
         self.name.editingFinished.connect(self._on_name)
+        self.name.textEdited.connect(self._on_typed)
         self.choose_folder.clicked.connect(self.folder_requested)
         self.takes.remove_requested.connect(choice.remove_take)
         self.takes.add_requested.connect(self.takes_requested)
@@ -312,6 +317,10 @@ class ExportPage(QWidget):
         self.result.hide()
         self.choice.set_rate(self.rate.currentData() or None)
 
+    def _on_typed(self) -> None:
+        self.result.hide()
+        self._confirmed = ()
+
     def _on_name(self) -> None:
         typed = self.name.text().strip()
         if typed != self.choice.name:
@@ -319,4 +328,12 @@ class ExportPage(QWidget):
 
     def _on_start(self) -> None:
         self._on_name()
+        self.refresh()
+        replaced = self.choice.replaced()
+        if replaced != self._confirmed:  # said beside the button; the next press means it
+            self._confirmed = replaced
+            if replaced:
+                self.start.setText(self.tr("Replace and export"))
+                self.start.setAccessibleName(self.start.text())
+                return
         self.export_requested.emit(self.choice.values())

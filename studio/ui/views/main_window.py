@@ -176,8 +176,9 @@ class MainWindow(QWidget):
         if self._may_close:
             event.accept()
             return
-        event.ignore()
         self.close_requested.emit()
+        # ``close_now`` may have been the answer: Qt does not begin a second close inside the first.
+        event.setAccepted(self._may_close)
 
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 (Qt's name)
         """Keep what floats in its place."""

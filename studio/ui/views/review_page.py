@@ -111,6 +111,10 @@ class ReviewPage(QWidget):
         self._chosen = known or review.first_choice()
         self.takes.choose(review.summary.folder)
         self.playhead.open(review.duration, review.motion.frame_s)
+        pressed = next((mark.time for mark in review.marks if mark.kind == "record"), 0.0)
+        if not same and 0.0 < pressed < review.duration:  # what came before R is there, and not what was asked for
+            self.playhead.seek(pressed)
+            self.playhead.range_starts_here()
         if same:
             self.playhead.seek(time)
         self.measures.show_take(review, self._chosen)
@@ -262,7 +266,7 @@ class ReviewPage(QWidget):
         whole = head.range_from is None and head.range_to is None
         words = self.tr("degrees, over the whole take")
         if not whole:
-            words = self.tr("degrees, from {start} to {end}").format(start=clock(head.begin), end=clock(head.end))
+            words = self.tr("degrees, {start} to {end}").format(start=clock(head.begin), end=clock(head.end))
         self.measures.show_range(head.begin, head.end, words)
 
     def _on_angles(self, names: tuple[str, ...]) -> None:

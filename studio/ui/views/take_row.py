@@ -113,7 +113,7 @@ class TakeRow(QStyledItemDelegate):
             right -= room + GAP
         if summary.refusal is not None:
             return
-        facts = " · ".join(part for part in (model.when(summary), model.loss(summary), summary.person) if part)
+        facts = " · ".join(part for part in (summary.person, model.when(summary), model.loss(summary)) if part)
         painter.setPen(QColor(tokens.muted))
         cut = self._small.elidedText(facts, Qt.TextElideMode.ElideRight, max(right - area.left(), 0))
         painter.drawText(QRect(area.left(), area.top(), right - area.left(), area.height()), _MIDDLE, cut)

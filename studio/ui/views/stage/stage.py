@@ -206,7 +206,7 @@ class Stage(QWidget):
             self._paint_ghost(painter, self._ghost)
         else:
             away = self.tr("The figure is out of the picture. Press V or double-click to find it.")
-            self._paint_empty(painter, self._empty if pose is None else away)
+            self._paint_empty(painter, away if has_place(pose) else self._empty)
         if self.hasFocus():
             painter.setPen(QPen(QColor(self._theme.tokens.accent), FOCUS))
             painter.setBrush(Qt.BrushStyle.NoBrush)
