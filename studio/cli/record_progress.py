@@ -6,7 +6,8 @@ from studio.capture import events
 from studio.core.errors import HeadingsUnknown
 from studio.core.sample import SensorId
 from studio.core.take import Assignment, Mark
-from studio.ui.wording import POSES, one_line
+from studio.ui.fact_words import POSES
+from studio.ui.wording import one_line
 
 Facts = Mapping[str, object]
 
