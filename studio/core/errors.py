@@ -10,8 +10,8 @@ The tree::
     ├── AlignmentError    NoSensorWorn · PoseMissing · PoseTooShort · MovedDuringHold · HeadingsUnknown
     │                     PoseNotHeld
     ├── TakeFileError     NotATake · Damaged · WrittenByNewerStudio · TakeUnsafe · TruthMissing
-    ├── RecordingError    AlreadyRecording · StoppedEarly · DiskFull · FileAtLimit · FolderNotWritable
-    │                     FolderIsFile · VerificationFailed
+    ├── RecordingError    AlreadyRecording · StoppedEarly · DiskFull · FileAtLimit · TakeAtLimit
+    │                     FolderNotWritable · FolderIsFile · VerificationFailed
     ├── ImportFailed      RecordingMissing · RecordingUnreadable · MapMissing · MapFileInvalid · FormatUnknown
     └── ExportError       NothingToExport · CannotWrite · TargetTaken · ReadBackDiffers
 
@@ -247,6 +247,15 @@ class DiskFull(RecordingError):
 @dataclass(eq=False)
 class FileAtLimit(RecordingError):
     """The recording is as long as a file on this disk may be (FAT32: 4 GiB)."""
+
+    folder: str
+    kept_s: float
+    """s of the recording that are safe on disk"""
+
+
+@dataclass(eq=False)
+class TakeAtLimit(RecordingError):
+    """The recording has as many samples or events as a take may have."""
 
     folder: str
     kept_s: float

@@ -71,7 +71,8 @@ class BlockReader:
         """The file has its end."""
         self._stream = stream
         self.path = path
-        self._size = stream.seek(0, 2)
+        self.size = stream.seek(0, 2)
+        """bytes of the file"""
         self.take = b""
         """The identity of the file, 8 bytes."""
         self._number = 0
@@ -207,7 +208,7 @@ class BlockReader:
         opcode_and_length = self._read(position, RECORD_HEAD_SIZE)
         if len(opcode_and_length) < RECORD_HEAD_SIZE or unpack_from(_RECORD, opcode_and_length) != (Opcode.DATA_END, 4):
             return False
-        return self._read(self._size - len(MAGIC), len(MAGIC)) == MAGIC
+        return self._read(self.size - len(MAGIC), len(MAGIC)) == MAGIC
 
     def _first_block(self) -> int | None:
         self._number = self._garbage = self.chunks = self.damaged = 0
@@ -220,7 +221,7 @@ class BlockReader:
     def _next_sync(self, position: int) -> int | None:
         """Return where the next block head may start, None when there is none."""
         position += RECORD_HEAD_SIZE
-        while position < self._size:
+        while position < self.size:
             window = self._read(position, WINDOW)
             found = window.find(SYNC)
             if found >= 0:

@@ -16,7 +16,8 @@ SYNC: Final = bytes.fromhex("9d1c6b746b74616b65f7a3e25bd80e41")
 MAX_CHUNK: Final = 4 << 20  # bytes; a reader never holds more than one chunk it has not checked
 MAX_BLOCK: Final = 2 * MAX_CHUNK  # bytes; the largest chunk with others, their indexes and all channels
 MAX_CHANNELS: Final = 1000  # 15 tags, a receiver and events need 17
-MAX_SAMPLES: Final = 64_000_000  # 12 h of 15 tags at 100 Hz; 9.5 GB in memory
+MAX_SAMPLES: Final = 260_000_000  # 24 h of 30 tags at 100 Hz
+MAX_EVENTS: Final = 1_000_000  # a marker every 86 ms for 24 h
 PART: Final = 4 << 20  # bytes of an attachment in one record, at most
 
 BLOCK_DTYPE: Final = np.dtype(

@@ -24,13 +24,14 @@ from studio.storage.limits import LARGEST_NUMBER, believe, is_plausible_mark, se
 from studio.storage.profile import (
     EVENT_TOPIC,
     IMU_TOPIC,
+    MAX_EVENTS,
     MAX_SAMPLES,
     MESSAGE_HEAD_SIZE,
     RECORD_HEAD_SIZE,
+    SAMPLE_DTYPE,
 )
 from studio.storage.sample_table import Rows, SampleTable, sample_rows
 
-MAX_EVENTS = 1_000_000  # a marker every 40 ms for 12 h
 MAX_SENSORS = 240  # 16 suits of 15 tags
 MAX_EARLY = 64 << 20  # bytes; channels stand again every 10 s, in which eight receivers at 1 Mbaud send 8 MB
 _LENGTH = Struct("<Q")
@@ -54,6 +55,8 @@ class TakeContent:
         self.unusable = 0
         """Chunks, messages and readings."""
         self._file = file
+        # A block may be made to lie in another, and each of its samples would then be read many times.
+        self._most_samples = min(MAX_SAMPLES, reader.size // SAMPLE_DTYPE.itemsize)
         self._channels: dict[SensorId, int] = {}
         self._samples = SampleTable()
         self._told: list[SensorInfo] = []
@@ -96,8 +99,8 @@ class TakeContent:
                 self.unusable += 1
             else:
                 self._samples.add(rows)
-        if self._samples.rows > MAX_SAMPLES:
-            raise TakeUnsafe(str(self._file), f"more than {MAX_SAMPLES} samples")
+        if self._samples.rows > self._most_samples:
+            raise TakeUnsafe(str(self._file), f"more than {self._most_samples} samples")
 
     def _add_events(self, messages: Messages) -> None:
         for body in bodies(messages):

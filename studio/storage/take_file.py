@@ -5,12 +5,12 @@ import errno
 from pathlib import Path
 from typing import NamedTuple
 
-from studio.core.errors import DiskFull, FileAtLimit, FolderNotWritable, RecordingError
+from studio.core.errors import DiskFull, FileAtLimit, FolderNotWritable, RecordingError, TakeAtLimit
 from studio.storage.blocks import Block
 from studio.storage.encoder import TakeEncoder
 from studio.storage.filesystem import FileSystem
 from studio.storage.ledger import Ledger
-from studio.storage.profile import BALLAST_FILE, IMU_TOPIC, PART_FILE, TAKE_FILE
+from studio.storage.profile import BALLAST_FILE, EVENT_TOPIC, IMU_TOPIC, PART_FILE, TAKE_FILE
 from studio.storage.session_folder import make_take_folder
 from studio.storage.take_json import TakeDocument, save_document
 from studio.storage.verification import verify
@@ -91,6 +91,15 @@ class TakeFile:
             self.failure = self.failure or FileAtLimit(str(self.folder), self.kept())
         self.failure = self.failure or self._failed(OSError(errno.ENOSPC, "less than the reserve"))
 
+    def stop_beyond(self, samples: int, events: int) -> None:
+        """Set ``failure`` when that many are kept: a take no reader accepts is no take."""
+        if self._samples() >= samples or self.ledger.counts[self._encoder.channels[EVENT_TOPIC].id] >= events:
+            self.failure = self.failure or TakeAtLimit(str(self.folder), self.kept())
+
+    def _samples(self) -> int:
+        channels = self._encoder.channels
+        return sum(self.ledger.counts[channel.id] for topic, channel in channels.items() if topic.startswith(IMU_TOPIC))
+
     def _room_in_file(self) -> int:
         return self._longest - self.ledger.size - END_RESERVE
 
@@ -120,7 +129,7 @@ class TakeFile:
         channels = self._encoder.channels
         imu = {channel.id for topic, channel in channels.items() if topic.startswith(IMU_TOPIC)}
         latest = verify(self.folder / TAKE_FILE, self.ledger, imu)
-        samples = sum(self.ledger.counts[channel] for channel in imu)
+        samples = self._samples()
         return Saved(self.folder, samples, max(latest - self._encoder.zero, 0.0) if samples else 0.0)
 
     def _begin(self) -> int:

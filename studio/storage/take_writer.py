@@ -12,6 +12,7 @@ from studio.core.take import Mark, Setup
 from studio.storage.encoder import RawBytes, TakeEncoder
 from studio.storage.facts import Anchor, Event, identity, mark_event
 from studio.storage.filesystem import FILES, FileSystem
+from studio.storage.profile import MAX_EVENTS, MAX_SAMPLES
 from studio.storage.take_file import Saved, TakeFile
 
 BLOCK_S = 0.05  # s between writes; half of what the profile allows, so that a busy computer still keeps to it
@@ -19,6 +20,8 @@ SYNC_EVERY = 20  # blocks, 1 s
 CAPACITY = 60_000  # samples; 40 s of 15 tags at 100 Hz, for disks that stall
 RAW_CAPACITY = 32 << 20  # bytes; 40 s of eight receivers at 1 Mbaud
 EVENT_CAPACITY = 100_000
+MOST_SAMPLES = MAX_SAMPLES - CAPACITY  # in one take: a full queue still fits into what readers accept
+MOST_EVENTS = MAX_EVENTS - 2 * EVENT_CAPACITY  # likewise; sensors and overflows are events, too
 WARN_S = 600.0  # s; 10 min: time to finish a session and to make room
 _MEASURABLE_S = 1.0  # s of recording before its data rate means anything
 
@@ -175,6 +178,7 @@ class TakeWriter:
             if overflow:
                 pending.events.append(Event("overflow", self._latest(pending), {"missing": overflow}))
             self._write(pending)
+            self._file.stop_beyond(MOST_SAMPLES, MOST_EVENTS)
             blocks += 1
             if blocks % SYNC_EVERY == 0:
                 self._file.sync()

@@ -199,6 +199,12 @@ TEMPLATES = _by_id(
         "Record the next take, or keep the library on a disk with another format (exFAT, NTFS, APFS).",
     ),
     Message(
+        "rec.take_limit",
+        "Recording stopped: a take holds no more.",
+        "24 hours of 30 sensors fit into one take; {kept_s} of the recording are safe in {folder}.",
+        "Record the next take.",
+    ),
+    Message(
         "rec.folder",
         "Recordings cannot be kept in {folder}.",
         "The studio has no right to write there.",
@@ -331,6 +337,7 @@ MESSAGE_OF: dict[type[StudioError], str | Callable[[Any], str]] = {
     errors.StoppedEarly: "rec.early",
     errors.DiskFull: lambda error: "rec.disk_full" if error.kept_s > 0 else "rec.no_room",
     errors.FileAtLimit: "rec.file_limit",
+    errors.TakeAtLimit: "rec.take_limit",
     errors.FolderNotWritable: "rec.folder",
     errors.FolderIsFile: "rec.is_file",
     errors.VerificationFailed: "rec.verify_fail",

@@ -11,14 +11,15 @@ import numpy as np
 import pytest
 from mcap.reader import make_reader
 
-from studio.core.errors import DiskFull, FileAtLimit, FolderNotWritable, RecordingError
+from studio.core.errors import DiskFull, FileAtLimit, FolderNotWritable, RecordingError, TakeAtLimit
 from studio.storage.encoder import TakeEncoder
 from studio.storage.facts import Anchor, identity
 from studio.storage.longest_file import NO_LIMIT, kind_of_mount, longest_file
+from studio.storage.profile import MAX_EVENTS, MAX_SAMPLES
 from studio.storage.take_file import BALLAST, END_RESERVE, RESERVE, TakeFile
 from studio.storage.take_reader import read_events, read_take
 from studio.storage.take_store import write_take
-from studio.storage.take_writer import WARN_S
+from studio.storage.take_writer import CAPACITY, EVENT_CAPACITY, MOST_EVENTS, MOST_SAMPLES, WARN_S
 from tests.storage.disks import FullDisk, ShortFiles, SmallDisk
 from tests.storage.recordings import DAY, SETUP, START, TAGS, sample, samples, start_writing
 
@@ -225,6 +226,35 @@ def test_an_imported_take_too_long_for_the_disk_is_said_to_be_that(tmp_path: Pat
 
     with pytest.raises(FileAtLimit):
         write_take(take, tmp_path, DAY, filesystem=ShortFiles(8000))
+
+
+def test_a_day_of_two_suits_fits_into_a_take_and_what_recording_keeps_can_be_read() -> None:
+    assert MOST_SAMPLES >= 24 * 3600 * 30 * 100
+    assert MOST_SAMPLES + CAPACITY <= MAX_SAMPLES
+    assert MOST_EVENTS + EVENT_CAPACITY < MAX_EVENTS
+
+
+@pytest.mark.parametrize(("limit", "fed"), [("MOST_SAMPLES", "samples"), ("MOST_EVENTS", "events")])
+def test_recording_stops_in_order_before_a_take_has_more_than_readers_accept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, limit: str, fed: str
+) -> None:
+    monkeypatch.setattr(f"studio.storage.take_writer.{limit}", 30)
+    writer = start_writing(tmp_path, tags=1)
+    writer.sample(sample(TAGS[0], 0))
+    for number in range(1, 30):
+        if fed == "samples":
+            writer.sample(sample(TAGS[0], number))
+        else:
+            writer.event("gap", {}, START)
+    if fed == "events":
+        writer.event("gap", {}, START)
+    wait_until(lambda: writer.failure is not None)
+
+    saved = writer.stop().result(SECONDS)
+
+    assert isinstance(writer.failure, TakeAtLimit)
+    assert writer.failure.kept_s == pytest.approx(saved.duration)
+    assert read_take(saved.folder)[1].finished
 
 
 MOUNTS = """\

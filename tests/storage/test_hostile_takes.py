@@ -23,6 +23,8 @@ from studio.core.sample import NO_CORRECTION
 from studio.core.solver import SolveOptions, solve
 from studio.core.take import Calibration, Mark
 from studio.storage import limits
+from studio.storage.blocks import BlockBuilder
+from studio.storage.profile import BLOCK_HEAD_SIZE
 from studio.storage.take_json import TakeDocument, load_document, save_document
 from studio.storage.take_reader import read_events, read_take
 from studio.storage.take_summary import summarise
@@ -316,6 +318,22 @@ def test_no_claim_costs_more_memory_than_its_file(honest: Claims, tmp_path: Path
         tracemalloc.stop()
 
     assert peak < 20 << 20  # the file has 0.6 MB; the summary looks at windows of up to 16 MB
+
+
+def test_samples_that_are_read_again_and_again_are_not_kept(honest: Claims, tmp_path: Path) -> None:
+    """Block heads one after the other, each of a block with the same chunk in it: 100 times what the file has."""
+    folder = honest.write(tmp_path)
+    chunk = BlockBuilder(b"stranger", 1)
+    chunk.add_rows(honest.rows)
+    body = b"".join(chunk.parts)
+    for number in range(200, 100, -1):
+        head = BlockBuilder(b"stranger", number, [body[:-1] + b"?"]).finish().data[:BLOCK_HEAD_SIZE]  # a wrong CRC
+        body = b"\x90" + BLOCK_HEAD_SIZE.to_bytes(8, "little") + head + body
+    with (folder / "take.mcap").open("ab") as file:
+        file.write(body)
+
+    with pytest.raises(TakeUnsafe, match="samples"):
+        read_take(folder)
 
 
 def test_nothing_but_a_refusal_comes_of_any_take_json(honest: Claims, tmp_path: Path) -> None:
