@@ -80,7 +80,8 @@ def test_standing_the_stated_uncertainty_covers_the_error_and_is_not_much_more(s
     """Block means of one who sways are not independent: type A alone covers 78 and 89 % of these."""
     errors, sigmas = [], []
     for seed in range(150):
-        rest = found(*swaying(seconds, np.random.default_rng(seed)), spread=RATE_SPREAD_WORN)
+        rate, force = swaying(seconds, np.random.default_rng(seed))
+        rest = found(rate, force, RATE_SPREAD_WORN)
         errors.append(rest.offset - OFFSET)
         sigmas.append(rest.sigma)
 
