@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from PySide6.QtCore import QEvent, QObject, QTimer
 
+from studio.core.live_frames import Pose
 from studio.core.take import Mark
 from tests.journeys.test_receiver_on_a_cable import suit
 from tests.ui.running_studio import running_studio
@@ -21,8 +22,10 @@ class Watch(QObject):
 
     def __init__(self, studio, page):
         super().__init__()
-        self.ages = []
-        self._studio, self._shown, self._painted = studio, None, None
+        self.ages: list[float] = []
+        self._studio = studio
+        self._shown: Pose | None = None
+        self._painted: Pose | None = None
         studio.tick.ticked.connect(self.note_shown)
         studio.stages.stage(page).installEventFilter(self)
 
@@ -36,6 +39,7 @@ class Watch(QObject):
         return False
 
     def note_painted(self):
+        assert self._painted is not None
         self.ages.append(time.perf_counter() - self._painted.time)
 
 

@@ -277,5 +277,7 @@ def test_live_the_headings_in_force_belong_to_the_groups_they_are_given_for():
     assert headings[Place.LEFT_SHANK].keys() == {1}
     for row, pose in enumerate(poses):
         assert (Place.LEFT_SHANK in pose.measured) == (row >= 450), row
-    last = poses[480].world_from_segment[SEGMENT_OF[Place.LEFT_SHANK]]
+    late = poses[480]
+    assert late is not None
+    last = late.world_from_segment[SEGMENT_OF[Place.LEFT_SHANK]]
     assert np.degrees(rotation.angle_between(last, truth[Place.LEFT_SHANK][480])) < 2.0
