@@ -16,6 +16,7 @@ from studio.capture.headless import record as record_take
 from studio.capture.live_session import LiveSession
 from studio.capture.runtime import Runtime
 from studio.cli import reports
+from studio.cli.help_texts import COMMAND
 from studio.cli.record_progress import RecordProgress, summary
 from studio.storage.recovery import recover_all
 from studio.ui.wording import one_line
@@ -95,4 +96,4 @@ def _say(line: str) -> None:
 def _finish_others(library: Path) -> None:
     """Give takes whose recording was cut off their end, now that nothing waits for the disk."""
     for folder, error in recover_all(library):
-        _say(reports.RECOVERED.format(folder=folder) if error is None else one_line(error))
+        _say(reports.RECOVERED.format(folder=folder, command=COMMAND) if error is None else one_line(error))

@@ -13,7 +13,9 @@ from studio.capture.truth import TruthReport
 from studio.core.take import Take
 from studio.export.sidecar import facts_of
 from studio.storage.facts import to_json
+from studio.storage.names import NOBODY
 from studio.storage.take_reader import ReadReport
+from studio.ui.fact_words import readable
 
 _HEADINGS = (
     "sensor", "place", "samples", "lost", "gaps", "longest", "rate", "clipped", "battery", "skew", "calibration",
@@ -21,7 +23,7 @@ _HEADINGS = (
 
 RECOVERED = (
     "A take whose recording was cut off was given its end; what was safe by then is in {folder}. "
-    "Look at it with: studio inspect {folder}"
+    "Look at it with: {command} inspect {folder}"
 )
 
 STAGES = {"read": "reading", "solve": "solving", "write": "writing"}
@@ -47,14 +49,15 @@ def inspection(take: Take, report: ReadReport, truth: TruthReport | None) -> dic
 
 def inspection_text(take: Take, report: ReadReport, truth: TruthReport | None) -> str:
     """Return what ``inspect`` prints."""
+    name, person, source = (readable(word) for word in (take.name or "take", take.person or NOBODY, take.source))
     lines = [
-        f"{take.name or 'take'}  {take.person}  {take.duration():.2f} s  {report.samples} samples  from {take.source}",
+        f"{name}  {person}  {take.duration():.2f} s  {report.samples} samples  from {source}",
         *_condition(report),
         "",
         *_columns([_HEADINGS, *(_cells(account) for account in ledger(take))]),
     ]
     if take.marks:
-        lines += ["", *(_mark(mark.time, mark.end, f"{mark.kind} {mark.label}") for mark in take.marks)]
+        lines += ["", *(_mark(mark.time, mark.end, f"{mark.kind} {mark.label}".strip()) for mark in take.marks)]
     if truth is not None:
         lines += ["", *truth_text(truth)]
     return "\n".join(lines)
@@ -75,7 +78,7 @@ def solve_text(report: SolveReport) -> str:
     lines += ["", f"{'sensor':<26} {'estimator':<9} {'offset (°/s)':>24} {'±':>8}"]
     for sensor, offset in report.offsets.items():
         values = " ".join(f"{math.degrees(value):7.3f}" for value in offset.value)
-        lines.append(f"{sensor:<26} {offset.estimator:<9} {values:>24} {_degrees(offset.sigma):>8}")
+        lines.append(f"{readable(sensor):<26} {offset.estimator:<9} {values:>24} {_degrees(offset.sigma):>8}")
     return "\n".join([*lines, "", *report.notes]).rstrip()
 
 
@@ -119,7 +122,7 @@ def _condition(report: ReadReport) -> list[str]:
 
 def _cells(a: SensorLedger) -> tuple[str, ...]:
     return (
-        a.sensor,
+        readable(a.sensor),
         a.place or "–",
         str(a.samples),
         str(a.lost),
@@ -129,7 +132,7 @@ def _cells(a: SensorLedger) -> tuple[str, ...]:
         str(a.clipped),
         f"{a.battery:.0%}" if math.isfinite(a.battery) else "–",
         f"{a.clock_skew_ppm:+.0f} ppm" if math.isfinite(a.clock_skew_ppm) else "–",
-        a.calibration,
+        readable(a.calibration),
     )
 
 
@@ -148,7 +151,7 @@ def _columns(rows: Sequence[tuple[str, ...]]) -> list[str]:
 
 def _mark(time: float, end: float, text: str) -> str:
     until = f" to {end:.2f} s" if math.isfinite(end) else ""
-    return f"{time:8.2f} s{until}  {text}".rstrip()
+    return f"{time:8.2f} s{until}  {readable(text)}"
 
 
 def _degrees(value: float) -> str:
