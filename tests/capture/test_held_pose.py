@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from studio.capture.procedures.held_pose import DELAYS, HOLDS, PATIENCE, SETTLE, Cue, HeldPose, Kind, Phase, Wish
 from studio.capture.procedures.judged_hold import Judged
 from studio.core.body import PLACES, Place
-from studio.core.errors import HeadingsUnknown, MovedDuringHold, PoseTooShort
+from studio.core.errors import HeadingsUnknown, MovedDuringHold, PoseNotHeld, PoseTooShort
 from studio.core.take import Alignment, LimbAlignment
 
 LEGAL = {
@@ -139,6 +139,15 @@ def test_a_reference_that_lies_too_far_back_is_held_again():
     now = held(hold, Judged(alignment(), None))
 
     held(hold, Judged(None, PoseTooShort("n", 0.0, 3.0, 120.0)), now)
+
+    assert hold.next_pose == "n"
+
+
+def test_a_reference_that_was_another_pose_is_held_again():
+    hold = HeldPose()
+    now = held(hold, Judged(alignment(), None))
+
+    held(hold, Judged(None, PoseNotHeld("n", ("left_thigh", "right_thigh"), "sit")), now)
 
     assert hold.next_pose == "n"
 

@@ -123,6 +123,25 @@ def test_nobody_else_is_blamed_while_one_limb_is_repeated(worn):
     assert set(alignment.limbs) == set(UPPER)
 
 
+def test_who_moved_in_the_bow_is_named_with_the_bow_and_keeps_the_others():
+    time = np.arange(round(SECONDS * RATE) + 1) / RATE
+    motion = {place: procedure(place, time, walking=0.0) for place in UPPER}
+    waving = np.radians(12.0) * np.sin(2 * np.pi * 0.8 * time) * ((time > 5.5) & (time < 8.5))
+    motion[RESTLESS] = rotation.multiply(motion[RESTLESS], rotation.about(2, waving))
+    take, truth = worn_take(UPPER, SECONDS, motion=motion)
+    holds = BodyHolds()
+    holds.add(N_HOLD)
+    holds.add(BOW_HOLD)
+
+    alignment, error = judged(holds, (take, solve_tracks(take, SolveOptions()), truth))
+
+    assert isinstance(error, MovedDuringHold)
+    assert (error.pose, error.places) == ("bow", (RESTLESS.value,))
+    sources = {place: limb.source for place, limb in alignment.limbs.items()}
+    assert sources.pop(RESTLESS) == "unknown"
+    assert set(sources.values()) == {"bow"}
+
+
 def test_the_procedure_of_these_tests_is_upright_in_both_holds(worn):
     _, _, truth = worn
     row = round(13.0 * RATE)
