@@ -79,7 +79,7 @@ def _import(add: AddVerb) -> None:
 
 def _inspect(add: AddVerb) -> None:
     verb = add("inspect", help="show what became of each sensor's samples", epilog=help_texts.INSPECT)
-    verb.add_argument("take", type=Path, metavar="TAKE")
+    verb.add_argument("take", type=_take, metavar="TAKE", help="the folder that record or import printed")
     verb.add_argument("--json", action="store_true", help="for programs")
     verb.add_argument("--truth", action="store_true", help="compare with the true motion of a synthetic take")
     verb.set_defaults(run=verbs.inspect)
@@ -87,7 +87,7 @@ def _inspect(add: AddVerb) -> None:
 
 def _solve(add: AddVerb) -> None:
     verb = add("solve", help="compute the motion of a take and show how it was found", epilog=help_texts.SOLVE)
-    verb.add_argument("take", type=Path, metavar="TAKE")
+    verb.add_argument("take", type=_take, metavar="TAKE", help="the folder that record or import printed")
     _add_solving(verb)
     verb.set_defaults(run=verbs.solve)
 
@@ -98,7 +98,7 @@ def _export(add: AddVerb) -> None:
         help="write a file for another program; it is read back before it is called done",
         epilog=help_texts.EXPORT,
     )
-    verb.add_argument("take", type=Path, metavar="TAKE")
+    verb.add_argument("take", type=_take, metavar="TAKE", help="the folder that record or import printed")
     verb.add_argument("--format", choices=("bvh", "csv"), required=True)
     verb.add_argument("--table", choices=("joints", "orientations", "raw"), help="of csv (default: joints)")
     presets = "; ".join(f"{name}: {', '.join(keys)}" for name, keys in (("bvh", BVH_PRESETS), ("csv", CSV_PRESETS)))
@@ -148,6 +148,12 @@ def _stature(text: str) -> float:
     if not SHORTEST <= metres <= TALLEST:
         raise argparse.ArgumentTypeError(f"{text!r} is no stature from {SHORTEST} to {TALLEST} m, nor one in cm")
     return metres
+
+
+def _take(text: str) -> Path:
+    if not text:  # "$(cat take.txt)" after a verb that failed
+        raise argparse.ArgumentTypeError("no take was named; did the verb before this one print any?")
+    return Path(text)
 
 
 def _seconds(text: str) -> float:

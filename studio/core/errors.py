@@ -3,7 +3,7 @@
 The tree::
 
     StudioError
-    ├── LinkError         PortGone · PortBusy · PortForbidden · SourceUnreadable · NoData
+    ├── LinkError         PortGone · PortBusy · PortForbidden · SourceUnreadable · NoData · FellSilent
     ├── ProtocolError     UnsupportedVersion
     ├── CalibrationError  CalibrationUnreadable
     ├── SetupError        PlaceTakenTwice · PersonCodeInvalid
@@ -72,6 +72,17 @@ class NoData(LinkError):
     source: str
     malformed: int
     """how many pieces arrived that made no sense"""
+
+
+@dataclass(eq=False)
+class FellSilent(LinkError):
+    """A source stayed open and sent nothing any more before the recording had its length."""
+
+    source: str
+    silent_s: float
+    """s at the end of the recording into which nothing came"""
+    asked_s: float
+    """s that were to be recorded"""
 
 
 class ProtocolError(StudioError):

@@ -92,6 +92,12 @@ TEMPLATES = _by_id(
         "Switch a tag on and keep it within 3 m, or try the simulated suit with the source “synthetic”.",
     ),
     Message(
+        "con.silent",
+        "Nothing came for the last {silent_s} of {asked_s}.",
+        "The source “{source}” stayed open and fell silent; what came before is kept.",
+        "Look at the batteries and keep the tags within 3 m, then record again.",
+    ),
+    Message(
         "con.garbage",
         "Data arrived but made no sense.",
         "{malformed} pieces came from “{source}” and none could be read.",
@@ -145,8 +151,8 @@ TEMPLATES = _by_id(
         "cal.heading",
         "Headings unknown: {places}.",
         "Without them it is not known which way these limbs faced in the held pose, and joint angles would be wrong.",
-        "Record a bow after the pose, strap the tags on as the picture shows and say so, "
-        "or use sensors that share one compass direction.",
+        "Record a bow after the pose, and name it too where poses are named; or strap the tags on as the picture "
+        "shows and say so; or use sensors that share one compass direction.",
     ),
     Message(
         "cal.other_pose",
@@ -226,7 +232,7 @@ TEMPLATES = _by_id(
     Message(
         "open.not_take",
         "There is no take at {path}.",
-        "A take is a folder that holds the file take.mcap.",
+        "A take is a folder that holds the file take.mcap, such as out/P014/2026-11-24a/take-001_walk.",
         "Check the path.",
     ),
     Message(
@@ -287,8 +293,8 @@ TEMPLATES = _by_id(
     Message(
         "imp.format",
         "The format was not recognised.",
-        "These are neither a folder of x-io sensors nor tables of numbers: {paths}.",
-        "Export the recording as a table (CSV) from the program it came from, and describe its columns in a map.",
+        "Imported are folders of x-io sensors, and tables of numbers that a map describes; this is neither: {paths}.",
+        "Give the folder that holds the folders of the sensors, or tables (CSV) and a map.",
     ),
     # Exporting
     Message(
@@ -323,6 +329,7 @@ MESSAGE_OF: dict[type[StudioError], str | Callable[[Any], str]] = {
     errors.PortForbidden: "con.perm",
     errors.SourceUnreadable: "con.source",
     errors.NoData: lambda error: "con.garbage" if error.malformed else "con.none",
+    errors.FellSilent: "con.silent",
     errors.UnsupportedVersion: lambda error: "con.tag_newer" if error.found > error.supported else "con.tag_older",
     errors.CalibrationUnreadable: "cal.file",
     errors.NoSensorWorn: "cal.no_sensor",

@@ -60,6 +60,7 @@ def test_without_a_verb_and_a_screen_it_says_so(capsys, monkeypatch):
         ["export", "x", "--format", "csv", "--fps", "60", "-o", "y.csv"],
         ["export", "x", "--format", "csv", "--fps", "native", "-o", "y.csv"],
         ["export", "x", "--format", "bvh", "--fps", "23.98", "-o", "y.bvh"],
+        ["inspect", ""],
         ["solve", "x", "--pose", "n=3"],
         ["solve", "x", "--pose", "handstand=1..2"],
         ["solve", "x", "--pose", "n=4..2"],
@@ -102,7 +103,8 @@ def test_a_refusal_gives_the_reason_that_is_true(tmp_path, capsys, take):
     assert "is not there" in refused(capsys, "import", tmp_path / "gone", *into)
     assert "is not there" in refused(capsys, "import", table, "--map", tmp_path / "gone.json", *into)
     assert "A map is missing" in refused(capsys, "import", table, *into)
-    assert "neither a folder of x-io" in refused(capsys, "import", file, *into)
+    assert "this is neither" in refused(capsys, "import", file, *into)
+    assert "and name it too where poses are named" in refused(capsys, "solve", take, "--pose", "n=1..4")
     synthetic = ("record", "--source", "synthetic:walk?speed=max", "--seconds", "1")
     assert "is a file, not a folder" in refused(capsys, *synthetic, "--library", file)
     assert "Jane" in refused(capsys, *synthetic, *into, "--person", "Jane")
