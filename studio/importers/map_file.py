@@ -11,7 +11,7 @@ import msgspec
 import numpy as np
 from msgspec import Meta
 
-from studio.core.body import DEFAULT_STATURE, Place
+from studio.core.body import Place
 from studio.core.errors import MapFileInvalid
 from studio.core.sample import SensorId
 from studio.importers.map_words import in_words
@@ -106,7 +106,7 @@ class Sensor(Strict, frozen=True):
 class Person(Strict, frozen=True):
     """Who wore the sensors."""
 
-    stature_m: Annotated[float, Meta(ge=0.3, le=2.8)] = DEFAULT_STATURE
+    stature_m: Annotated[float, Meta(ge=0.3, le=2.8)]
 
 
 class Pose(Strict, frozen=True):

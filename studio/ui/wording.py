@@ -207,7 +207,7 @@ TEMPLATES = _by_id(
     Message(
         "rec.take_limit",
         "Recording stopped: a take holds no more.",
-        "24 hours of 30 sensors fit into one take; {kept_s} of the recording are safe in {folder}.",
+        "One take has room for 24 hours of 30 sensors; {kept_s} of the recording are safe in {folder}.",
         "Record the next take.",
     ),
     Message(

@@ -97,6 +97,7 @@ def test_sensors_must_differ_in_name_and_place(tmp_path, second, reason):
         ("[]", "$: it must be entries in braces, not a list"),
         ('{"sensors": []}', "$.sensors: it must be a list that is not empty"),
         ("[" * 100_000, "$: "),
+        (FULL | {"person": {}}, "$.person: the entry 'stature_m' is missing"),
         (FULL | {"person": {"stature_m": 170}}, "$.person.stature_m: it must be a number <= 2.8"),
         (FULL | {"poses": [{"name": "a", "from_s": 0, "to_s": 1}]}, "$.poses[0].name: 'a' is none of bow, n, sit, t"),
         (FULL | {"poses": [{"name": "n", "from_s": 2, "to_s": 1}]}, "$.poses[0].to_s: 1 is not after from_s"),
