@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from studio.capture.live_session import LiveSession
 from studio.capture.setups import setup_for, with_stature
 from studio.capture.sources import open_source
-from studio.core.errors import NoData, RecordingError, StoppedEarly, StudioError, WrittenByNewerStudio
+from studio.core.errors import FellSilent, NoData, RecordingError, StoppedEarly, StudioError, WrittenByNewerStudio
 from studio.core.take import Setup
 from studio.storage.person_file import Person, load_person, save_person
 from studio.storage.take_file import Saved
@@ -34,12 +34,12 @@ class Recorded(NamedTuple):
 
     saved: Saved
     stopped_by: StudioError | None
-    """DiskFull or a lost source; None when it has its length or was stopped by hand."""
+    """DiskFull, a lost source or one that fell silent; None when it has its length or was stopped by hand."""
     mistake: BaseException | None
     """Ours, that ended it: for the crash report."""
     sensors: int
-    loss: float
-    """Lost frames as a share of all, 0…1."""
+    loss: float | None
+    """Lost frames as a share of all, 0…1; None when not all sensors were counted, or nobody heard how it went on."""
 
 
 async def record(request: RecordRequest, session: LiveSession, stop: asyncio.Event) -> Recorded:
@@ -63,9 +63,10 @@ async def record(request: RecordRequest, session: LiveSession, stop: asyncio.Eve
             request.library, request.person, request.name, request.source, request.seconds
         )
         await _comes_first(session.finished(recording), stopper)
-        stopped_by = recording.writer.failure or session.lost()
+        silence = FellSilent(request.source, recording.silent_for, request.seconds) if recording.silent_for else None
+        stopped_by = recording.writer.failure or session.lost() or silence
         saved = await session.stop_recording()
-        sensors, loss = len(session.infos), _loss(session)
+        sensors, loss = len(session.infos), None if silence else _loss(session)
     finally:
         stopper.cancel()
         await session.disconnect()
@@ -89,10 +90,12 @@ async def _comes_first(work: Coroutine[Any, Any, None], stopper: asyncio.Task[bo
     return True
 
 
-def _loss(session: LiveSession) -> float:
-    counts = session.health().values()
-    lost = sum(health.lost for health in counts)
-    return lost / max(lost + sum(health.received for health in counts), 1)
+def _loss(session: LiveSession) -> float | None:
+    counts = session.health()
+    if counts.keys() < session.infos.keys():  # played again from samples: what is missing there was lost before
+        return None
+    lost = sum(health.lost for health in counts.values())
+    return lost / max(lost + sum(health.received for health in counts.values()), 1)
 
 
 def _setup(request: RecordRequest, session: LiveSession, offered: Setup | None, person: Person) -> Setup:

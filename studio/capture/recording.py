@@ -68,7 +68,10 @@ class Recording:
         """Clock of ``Sample.time``: the first kept sample."""
         self.full = asyncio.Event()
         """Set when the length asked for is reached, or when nothing more can be kept."""
+        self.silent_for = 0.0
+        """s at the end into which nothing came, when that is how it ended."""
         self._began = began
+        self._newest = began
         self._length = seconds
         self._health_noted = float("-inf")
         self._known: dict[SensorId, SensorInfo] = {}
@@ -77,12 +80,14 @@ class Recording:
         """Keep a sample, unless it comes after the end."""
         if self.first is None:
             self.first, self._began = sample.time, sample.received
+            self._newest = sample.time
         if self.writer.failure is not None or sample.time >= self.first + self._length:
             self.full.set()
             return
         if self._known.get(sample.sensor) is not info:
             (self.writer.update_info if sample.sensor in self._known else self.writer.add_sensor)(info)
             self._known[sample.sensor] = info
+        self._newest = max(self._newest, sample.time)
         self.writer.sample(sample)
 
     def look(self, now: float, heard: float) -> None:
@@ -94,7 +99,12 @@ class Recording:
             This computer's clock, and what it said when a sample came last. Both are asked: a replay at half
             speed takes twice its length, and goes on sending.
         """
-        if self.writer.failure is not None or min(now - self._began - self._length, now - heard) >= MARGIN:
+        if self.writer.failure is not None:
+            self.full.set()
+        elif not self.full.is_set() and min(now - self._began - self._length, now - heard) >= MARGIN:
+            missing = self._length if self.first is None else self.first + self._length - self._newest
+            # Up to the margin it may be that the last samples were lost on their way.
+            self.silent_for = missing if missing > MARGIN else 0.0
             self.full.set()
 
     def raw(self, link: str, received: float, data: bytes) -> None:

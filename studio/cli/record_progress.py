@@ -51,9 +51,10 @@ class RecordProgress:
             yield NOTED[event.kind].format_map(_in_words(event.facts, worn))
 
 
-def summary(seconds: float, sensors: int, loss: float) -> str:
-    """Return the last line."""
-    return f"Saved: {seconds:.1f} s, {counted(sensors)}, {loss:.2%} lost."
+def summary(seconds: float, sensors: int, loss: float | None) -> str:
+    """Return the last line; it is silent about what nobody counted."""
+    lost = "" if loss is None else f", {loss:.2%} lost"
+    return f"Saved: {seconds:.1f} s, {counted(sensors)}{lost}."
 
 
 def counted(sensors: int) -> str:

@@ -68,6 +68,24 @@ def test_when_nothing_comes_any_more_the_clock_of_this_computer_ends_it(recordin
     assert recording.full.is_set()
 
 
+@pytest.mark.parametrize(("last", "silent_for"), [(20, 0.8), (40, 0.6), (60, 0.0)])
+def test_how_much_is_missing_at_the_end_is_told_beyond_what_may_be_lost_on_the_way(recording, last, silent_for):
+    keep(recording, 0, last)
+
+    recording.look(START + 10.0, START)
+
+    assert recording.silent_for == pytest.approx(silent_for)
+
+
+def test_a_recording_that_has_its_length_did_not_end_in_silence(recording):
+    keep(recording, 0, 20, 100)
+
+    recording.look(START + 10.0, START)
+
+    assert recording.full.is_set()
+    assert recording.silent_for == 0.0
+
+
 def test_a_source_slower_than_time_is_not_cut_off_while_it_sends(recording):
     keep(recording, 0, 20)
 

@@ -1,5 +1,6 @@
 """What ``studio record`` says: the folder on stdout, everything else on stderr, and how it ends."""
 
+import asyncio
 from pathlib import Path
 
 import pytest
@@ -23,18 +24,19 @@ BODY = Alignment("n", 1.0, 4.0, {})
 
 
 class Breaking:
-    """A link that gives what a suit of exact sensors says, and then breaks."""
+    """A link that gives what a suit of exact sensors says, and then breaks, or falls silent when nothing breaks it."""
 
     name = "breaking"
     dialect = ""
-    paced = False
 
-    def __init__(self, pieces, problem):
-        self._pieces, self._problem = pieces, problem
+    def __init__(self, pieces, problem, *, paced=False):
+        self._pieces, self._problem, self.paced = pieces, problem, paced
 
     async def arrivals(self):
         for start in range(0, len(self._pieces), 8):
             yield [piece for _, piece in self._pieces[start : start + 8]]
+        if self._problem is None:
+            await asyncio.Event().wait()
         raise self._problem
 
     async def send(self, data):
@@ -71,8 +73,25 @@ def test_a_source_that_is_lost_ends_in_its_sentence_after_the_folder(broken):
     assert take.duration() == pytest.approx(30.0)
     lines = err.splitlines()
     assert lines[0] == "7 sensors found. Recording…"
-    assert lines[-2] == "Saved: 30.0 s, 7 sensors, 0.00% lost."
+    assert lines[-2] == "Saved: 30.0 s, 7 sensors."
     assert lines[-1].startswith("ttyA is not there.")
+
+
+def test_a_source_that_falls_silent_is_told_and_no_loss_is_claimed(tmp_path, monkeypatch, capsys):
+    take, _ = worn_take(PRESETS["lower"], 6.0)
+    silent = Breaking(told(take), None, paced=True)
+
+    async def opened(source):
+        return OpenSource(silent, take.setup)
+
+    monkeypatch.setattr("studio.capture.headless.open_source", opened)
+    code = main(["record", "--source", "serial:ttyA", "--library", str(tmp_path), "--seconds", "8"])
+    out, err = capsys.readouterr()
+
+    assert code == 1
+    assert read_take(Path(out.removesuffix("\n")))[0].duration() == pytest.approx(6.0)
+    assert err.splitlines()[-2] == "Saved: 6.0 s, 7 sensors."
+    assert err.splitlines()[-1].startswith("Nothing came for the last 2.0 s of 8.0 s.")
 
 
 def test_our_own_mistake_saves_the_take_and_ends_in_a_report(broken):
@@ -151,3 +170,8 @@ def test_other_notes_are_for_the_take_only():
 
 def test_the_last_line_sums_up():
     assert summary(12.34, 1, 0.01234) == "Saved: 12.3 s, 1 sensor, 1.23% lost."
+    assert summary(12.34, 1, 0.0) == "Saved: 12.3 s, 1 sensor, 0.00% lost."
+
+
+def test_the_last_line_says_nothing_of_losses_that_nobody_counted():
+    assert summary(12.34, 1, None) == "Saved: 12.3 s, 1 sensor."
