@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from studio.core.sample import NO_CORRECTION, Flag, SensorId, Stream
 from studio.core.take import Take
+from studio.core.track import flags_of, in_force
 
 SKEW_SPAN = 5.0  # s; over less, the jitter of arrivals hides the clocks' difference
 
@@ -103,9 +104,9 @@ def _skew(stream: Stream, span: float) -> float:
 
 
 def _calibration(take: Take, stream: Stream) -> str:
-    stored = [c.date for c in take.setup.calibrations if c.sensor == stream.info.sensor]
-    if stored:
-        return stored[-1]
+    stored = [c for c in take.setup.calibrations if c.sensor == stream.info.sensor]
+    if stored and in_force(stream.info, flags_of(stream), stored[-1]) is not None:
+        return stored[-1].date
     if stream.info.orientation != "integrated":
         return "unknown"
     if stream.info.correction is None:

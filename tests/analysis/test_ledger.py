@@ -8,7 +8,8 @@ import pytest
 
 from studio.analysis.ledger import ledger
 from studio.core.body import PRESETS
-from studio.core.take import Take
+from studio.core.sample import NO_CORRECTION, Flag
+from studio.core.take import Calibration, Take
 from tests.core.worn_sensors import worn_take
 
 
@@ -34,3 +35,16 @@ def test_too_few_samples_tell_nothing_of_a_clock(step: int) -> None:
     (account,) = ledger(taken(slice(0, None, step)))
 
     assert math.isnan(account.clock_skew_ppm)
+
+
+@pytest.mark.parametrize(("flags", "said"), [(0, "2026-11-24"), (Flag.CALIBRATED, "in the tag")])
+def test_a_stored_calibration_is_said_to_correct_only_where_it_does(flags: int, said: str) -> None:
+    """A tag that corrects by itself and did not tell how is not corrected a second time."""
+    take = taken(slice(None))
+    tag = replace(take.streams[0].info, orientation="integrated", correction=None)
+    stream = replace(take.streams[0], info=tag, flags=np.full(len(take.streams[0]), flags, np.uint32))
+    stored = Calibration(tag.sensor, NO_CORRECTION, "2026-11-24", "rest")
+
+    (account,) = ledger(replace(take, streams=(stream,), setup=replace(take.setup, calibrations=(stored,))))
+
+    assert account.calibration == said
