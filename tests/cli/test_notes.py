@@ -86,6 +86,7 @@ def test_a_limb_whose_heading_is_unknown_is_named_at_export_too(tmp_path):
         answer = say("export", folder, "--format", kind, "-o", tmp_path / f"walk.{kind}")
         assert answer.code == 0, answer.err
         assert "Heading unknown, so shown without a sensor of its own: left foot." in answer.err
+    assert "right hand, left foot." in answer.err  # of the BVH: what is held still, the foot among it
 
 
 def rows_of(stream, rows):

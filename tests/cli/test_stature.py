@@ -12,6 +12,7 @@ from studio.storage.person_file import load_person
 from studio.storage.take_reader import read_take
 from studio.storage.take_store import write_take
 from tests.core.worn_sensors import worn_take
+from tests.importers.mapped_tables import FULL, ROWS, text
 from tests.journeys.command_line import say
 
 SAMPLE = Path(__file__).resolve().parents[2] / "resources" / "samples" / "xio-lower-body"
@@ -46,6 +47,17 @@ def test_an_import_keeps_it_for_the_person_and_the_next_import_knows_it(tmp_path
     assert load_person(tmp_path, "P014").stature == pytest.approx(1.81)
     assert (again.setup.stature, again.setup.stature_known) == (pytest.approx(1.81), True)
     assert not other.setup.stature_known
+
+
+def test_what_the_recording_says_is_stronger_than_what_is_known_and_what_is_told_is_strongest(tmp_path):
+    (tmp_path / "walk.csv").write_text(text(ROWS))
+    (tmp_path / "map.json").write_text(json.dumps(FULL | {"person": {"stature_m": 1.72}}))
+    words = ("import", tmp_path / "walk.csv", "--map", tmp_path / "map.json", "--library", tmp_path, "--person", "P014")
+
+    say(*words, "--stature", "1.81")
+    mapped, told = taken(say(*words)), taken(say(*words, "--stature", "1.90"))
+
+    assert (mapped.setup.stature, told.setup.stature) == (1.72, 1.90)
 
 
 def test_without_a_person_nothing_is_kept(tmp_path):
