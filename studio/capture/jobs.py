@@ -116,7 +116,7 @@ def run_export(request: ExportRequest, progress: Progress) -> tuple[Path, tuple[
     TakeFileError, CalibrationError, AlignmentError, ExportError
     """
     loaded = load(request.solve, progress)
-    check_target(request.target, digest_of(loaded.take), overwrite=request.overwrite)
+    check_target(request.target, digest_of(loaded.take), request.exporter, overwrite=request.overwrite)
     progress("solve", 0.2)
     motion, orientations = None, {}
     if request.exporter in ("bvh", "joints"):

@@ -365,7 +365,7 @@ class CannotWrite(ExportError):
 
 @dataclass(eq=False)
 class TargetTaken(ExportError):
-    """A file stands there that this studio did not write from this take, or that was changed since."""
+    """A file stands there that is not the same kind of file from this take, or that was changed since."""
 
     path: str
 

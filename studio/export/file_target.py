@@ -40,13 +40,15 @@ def is_taken(path: Path) -> bool:
     return path.exists() or sidecar_of(path).exists()
 
 
-def check_target(path: Path, samples_sha256: str, *, overwrite: bool) -> None:
+def check_target(path: Path, samples_sha256: str, exporter: str, *, overwrite: bool) -> None:
     """Refuse before any work is done.
 
     Parameters
     ----------
     samples_sha256 : str
         Of the take (``sidecar.digest_of``).
+    exporter : str
+        Key of ``registry.EXPORTERS``: another kind of file is never replaced unasked.
     overwrite : bool
         A person said that whatever stands there is to be replaced.
 
@@ -64,7 +66,9 @@ def check_target(path: Path, samples_sha256: str, *, overwrite: bool) -> None:
         if told is None:
             raise TargetTaken(str(sidecar_of(path)))
         return
-    if told is None or told.get("take", {}).get("samples_sha256") != samples_sha256 or told.get("file") != _seen(path):
+    if told is None or told.get("exporter") != exporter or told["take"].get("samples_sha256") != samples_sha256:
+        raise TargetTaken(str(path))
+    if told.get("file") != _seen(path):
         raise TargetTaken(str(path))
 
 

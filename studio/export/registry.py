@@ -29,7 +29,7 @@ def export_file(name: str, material: Material, wish: Wish, path: Path) -> tuple[
     product: Product = getattr(import_module(module), function)(material, wish)
     beside = sidecar_of(path)
     written = write_file(path, product.blocks, product.read_back)
-    text = as_text({**product.sidecar, "file": written._asdict()})
+    text = as_text({**product.sidecar, "exporter": name, "file": written._asdict()})
 
     def same_text(part: Path) -> None:
         if part.read_bytes() != text:

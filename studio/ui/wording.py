@@ -312,7 +312,7 @@ TEMPLATES = _by_id(
     Message(
         "exp.taken",
         "{path} is there already.",
-        "It was not made by this studio from this take, or it was changed since.",
+        "It is not the same kind of file, made by this studio from this take, or it was changed since.",
         "Choose another name, or add --overwrite to replace it.",
     ),
     Message(

@@ -73,6 +73,15 @@ def test_another_take_does_not_replace_it(takes, target):
     assert kept(say("export", takes[1], *TABLE, target), target, target.read_bytes())
 
 
+@pytest.mark.parametrize(
+    "other", [("--format", "bvh", "--pose", "n=0..2"), ("--format", "csv", "--table", "orientations")]
+)
+def test_another_kind_of_file_from_the_same_take_does_not_replace_it(takes, target, other):
+    say("export", takes[0], *TABLE, target)
+
+    assert kept(say("export", takes[0], *other, "-o", target), target, target.read_bytes())
+
+
 def test_what_was_changed_since_stays(takes, target):
     """Somebody put a column of their own into the table."""
     say("export", takes[0], *TABLE, target)
