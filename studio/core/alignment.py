@@ -37,6 +37,9 @@ STRAP_CONTRADICTION = math.radians(45.0)  # gravity disagrees by more: the tag d
 # tip forwards (negative), arms and thighs are lifted forwards (positive).
 _LIFTED = frozenset({*ARMS, Place.LEFT_THIGH, Place.RIGHT_THIGH})
 
+# What was measured is worth the same however it was; what a strap is said to do is worth less.
+_WORTH: Mapping[HeadingSource, int] = {"bow": 2, "two poses": 2, "common world": 2, "strap rule": 1, "unknown": 0}
+
 NO_MOUNTING: Quaternion = (1.0, 0.0, 0.0, 0.0)
 
 _POSE_NAMES: dict[str, PoseName] = {"n": "n", "t": "t", "sit": "sit"}
@@ -95,6 +98,12 @@ def require_headings(alignment: Alignment) -> None:
     unknown = tuple(place.value for place, limb in alignment.limbs.items() if limb.source == "unknown")
     if len(unknown) == len(alignment.limbs):
         raise HeadingsUnknown(unknown)
+
+
+def worse_limbs(fresh: Alignment, before: Alignment) -> set[Place]:
+    """Return the limbs of which another alignment knew better how their sensor sits."""
+    both = fresh.limbs.keys() & before.limbs.keys()
+    return {place for place in both if _WORTH[fresh.limbs[place].source] < _WORTH[before.limbs[place].source]}
 
 
 def reference_mark(poses: Sequence[Mark]) -> Mark | None:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from studio.core import rotation
-from studio.core.alignment import align, refused_holds, require_headings
+from studio.core.alignment import align, refused_holds, require_headings, worse_limbs
 from studio.core.body import REFERENCE_POSES, Place, Skeleton
 from studio.core.errors import AlignmentError, HeadingsUnknown, MovedDuringHold, NoSensorWorn, PoseMissing, PoseTooShort
 from studio.core.full_body import FullBody
@@ -118,7 +118,9 @@ def solve_tracks(take: Take, options: SolveOptions) -> dict[SensorId, SensorTrac
 
 
 def find_alignment(take: Take, tracks: Mapping[SensorId, SensorTrack], options: SolveOptions) -> Aligned:
-    """Return how the sensors sit: by the poses held in the take, else as carried into it, else by its first second.
+    """Return how the sensors sit: by the poses held in the take, as carried into it, or by its first second.
+
+    Poses held in the take count where they tell of no limb less than what is carried into it.
 
     Raises
     ------
@@ -128,12 +130,16 @@ def find_alignment(take: Take, tracks: Mapping[SensorId, SensorTrack], options: 
     poses, carried = _poses(take, options), take.setup.carried
     if any(mark.label in REFERENCE_POSES for mark in poses):
         try:
-            return _held(take, tracks, poses)
+            held = _held(take, tracks, poses)
         except NoSensorWorn:
             raise
         except AlignmentError:
             if carried is None:
                 raise
+        else:
+            # One more N-pose tells where everybody faced, and less of the straps than what was held before the take.
+            if carried is None or not worse_limbs(held.alignment, carried.alignment):
+                return held
     if carried is not None:
         return _carried(take, tracks, poses, carried)
     assumed = Mark(0.0, "pose", "n", min(ASSUMED_POSE, take.duration()))
@@ -184,7 +190,10 @@ def _carried(
     since = carried.time - carried.alignment.to_s
     note = f"The body was calibrated {since:.0f} s before the take began; no pose was held in it."
     if any(mark.label in REFERENCE_POSES for mark in poses):
-        note = f"The body was calibrated {since:.0f} s before the take began; the poses held in it could not be used."
+        note = (
+            f"The body was calibrated {since:.0f} s before the take began; the poses held in it tell less of how the "
+            "tags sit and could not be used for that."
+        )
     otherwise = _stood_otherwise(take, tracks, carried.alignment, poses)
     return Aligned(carried.alignment, headings, (note, *otherwise, *_unknown(carried.alignment, headings)))
 

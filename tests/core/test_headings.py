@@ -281,3 +281,28 @@ def test_live_the_headings_in_force_belong_to_the_groups_they_are_given_for():
     assert late is not None
     last = late.world_from_segment[SEGMENT_OF[Place.LEFT_SHANK]]
     assert np.degrees(rotation.angle_between(last, truth[Place.LEFT_SHANK][480])) < 2.0
+
+
+@METHODS
+@pytest.mark.parametrize("mounting", ["unknown", "strapped"])
+def test_a_pose_held_again_in_a_take_that_carries_its_calibration_does_not_spoil_it(method, mounting):
+    """N-pose alone tells nothing, or the strap rule's guess, of what N-pose and bow had told before the take."""
+    began = 9.0
+    take, truth = turned_take()
+    alignment = solve(take).motion.alignment
+    seen = {}
+    for place in LOWER:
+        segment_from_sensor = rotation.inverse(np.array(alignment.limbs[place].sensor_from_segment))
+        seen[place] = tuple(rotation.multiply(truth[place][round(began * RATE)], segment_from_sensor).tolist())
+    moved = replace(alignment, from_s=N_HOLD.time - began, to_s=N_HOLD.end - began)
+    late = rested(cut(take, began))
+    hold = Mark(AGAIN.time - began, "pose", "n", AGAIN.end - began)
+    setup = replace(late.setup, carried=CarriedAlignment(moved, 0.0, seen), mounting=mounting)
+
+    motion = solve(replace(late, marks=(hold,), setup=setup), SolveOptions(method=method)).motion
+
+    assert motion.alignment is moved
+    after = {place: true[round(began * RATE) :] for place, true in truth.items()}
+    for place in LOWER:
+        assert motion.measured[place][1:-1].all()
+        assert error_of(motion, after, place, 8.0, 14.0) < 4.0, place
