@@ -20,7 +20,7 @@ LONGEST_TAKE: Final = 7 * 86400.0  # s; a week
 SHORTEST_FRAME: Final = 1e-4  # s; 10 kHz, above any gyroscope
 LONGEST_FRAME: Final = 60.0  # s
 FRAME: Final = 0.02  # s; what the wire protocol calls a frame, for a sensor of which nobody knows
-STEP_BACK: Final = 10.0  # s; a clock that is fitted anew moves by tenths of a second
+STEP_BACK: Final = 10.0  # s; a clock that is fitted anew moves by tenths of a second, to either side
 MOST_FRAMES: Final = 4_320_000  # 12 h at 100 Hz; solved, 3.5 GB
 FRAMES_PER_SAMPLE: Final = 10  # beyond that: nine of ten samples lost
 LARGEST_COUNT: Final = 1 << 52  # of frames; exact as float64
@@ -104,6 +104,7 @@ def believe(rows: Rows, zero: float) -> tuple[Rows, int]:
         placed = np.abs(time) <= LONGEST_TAKE
         placed &= (rows["frame"] >= -LARGEST_COUNT) & (rows["frame"] <= LARGEST_COUNT)
         placed &= (rows["epoch"] >= 0) & (rows["epoch"] <= MOST_RESTARTS)
+        placed &= ~_is_ahead(time, placed)
         placed &= time >= np.maximum.accumulate(np.where(placed, time, -LONGEST_TAKE)) - STEP_BACK
         length = np.sqrt((rows["orientation"] ** 2).sum(axis=1))
         wrong = (length < 0.5) | (length > 2.0)
@@ -122,6 +123,19 @@ def believe(rows: Rows, zero: float) -> tuple[Rows, int]:
             wrong |= beyond
     unbelieved = int((wrong | ~placed).sum())
     return (rows if placed.all() else rows[placed]), unbelieved
+
+
+def _is_ahead(time: NDArray[np.float64], placed: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Return which rows (n,) lie far ahead of the one before and of the one after; s, of those that are ``placed``."""
+    ahead = np.zeros(len(time), bool)
+    kept = time[placed]
+    if len(kept) > 2:
+        steps = np.diff(kept)
+        # The first is judged by the two that follow; of the last nobody can tell whether the rest was cut off.
+        of_the_last = np.concatenate(([kept[0] - kept[2]], steps))
+        of_the_next = np.concatenate((-steps, [-np.inf]))
+        ahead[placed] = np.minimum(of_the_last, of_the_next) > STEP_BACK
+    return ahead
 
 
 def nominal_frame(info: SensorInfo, time: NDArray[np.float64]) -> float:

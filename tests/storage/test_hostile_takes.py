@@ -208,6 +208,27 @@ def test_two_samples_a_week_apart_do_not_cost_the_memory_of_a_week(claims: Claim
         read_take(claims.write(tmp_path))
 
 
+@pytest.mark.parametrize("position", [0, 100, -2])
+def test_a_sample_days_ahead_of_those_around_it_is_left_out_and_counted(
+    claims: Claims, tmp_path: Path, position: int
+) -> None:
+    row = np.flatnonzero(claims.rows["channel"] == 2)[position]
+    claims.rows["time"][row] = 3 * 86400.0
+    folder = claims.write(tmp_path)
+
+    take, report = read_take(folder)
+
+    assert (report.damaged, report.samples) == (1, len(claims.rows) - 1)
+    assert take.duration() == pytest.approx(10.0, abs=0.1)
+
+
+def test_a_sensor_that_was_away_for_a_minute_is_believed(claims: Claims, tmp_path: Path) -> None:
+    rows = np.flatnonzero(claims.rows["channel"] == 2)
+    claims.rows["time"][rows[200:]] += 60.0
+
+    assert read_take(claims.write(tmp_path))[1].damaged == 0
+
+
 def test_a_count_that_runs_ahead_of_its_samples_does_not_cost_their_memory(claims: Claims, tmp_path: Path) -> None:
     claims.sensors[0]["info"]["frame_s"] = limits.SHORTEST_FRAME
     first = claims.rows["channel"] == 2
