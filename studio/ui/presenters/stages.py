@@ -1,6 +1,7 @@
 """The figures of home, capture and review: one is seen at a time, and all are seen from the same side."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 from PySide6.QtCore import QObject
@@ -63,7 +64,8 @@ class Stages(QObject):
             stage.set_skeleton(skeleton)
             stage.clear_path()
         if pose is not None and np.isfinite(pose.joints).any():
-            stage.show_pose(pose)
+            # Home says below the figure that nobody wears it.
+            stage.show_pose(replace(pose, caption="") if self._page == "home" else pose)
         elif not self._show.has_body():
             stage.show_pose(None)
         stage.tick(now)
