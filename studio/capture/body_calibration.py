@@ -1,23 +1,36 @@
 """The body calibration in force: the holds it was made of, and what of it a take must carry."""
 
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from studio.capture.procedures.judged_hold import BodyHolds, Judged
 from studio.core import rotation
+from studio.core.alignment import heading_in, worse_limbs
 from studio.core.body import Place
+from studio.core.headings import turn_between, wrapped
+from studio.core.hold import hold_all
 from studio.core.live_solver import Solver
+from studio.core.plausibility import misheld
 from studio.core.sample import Quaternion, SensorId
-from studio.core.take import Alignment, CarriedAlignment, Mark, Setup
+from studio.core.take import Alignment, CarriedAlignment, LimbAlignment, Mark, Setup
 from studio.core.track import SensorTrack, attitude_at, prior_offset_sigma
 
 AROUND = 0.2  # s of samples looked at before and after a hold or an instant; ten frames of 20 ms
 NEAR = 0.1  # s; a sensor silent for longer around the start of a take is not known to have gone on
 SHOWN_OFFSET = math.radians(0.3)  # rad/s; what holding still leaves of any offset (0.05 to 0.3, as sitting does)
+
+
+class _Kept(NamedTuple):
+    """A limb whose tag sits as before, and by which hold and in which heading group its heading is known."""
+
+    limb: LimbAlignment
+    held_at: float
+    group: int
 
 
 class BodyCalibration:
@@ -43,7 +56,8 @@ class BodyCalibration:
     def add(self, mark: Mark, only: Collection[Place], solver: Solver, setup: Setup) -> Judged:
         """Judge a hold of the whole body, or of the limbs ``only`` while the others stay as they are.
 
-        What can be used is in force afterwards; else the calibration from before stays.
+        What can be used is in force afterwards; else the calibration from before stays. A limb of which the new
+        hold tells less than was known takes nothing but its heading from it.
         """
         self.marks.append((mark, frozenset(only)))
         self._holds.add(mark, only)
@@ -52,16 +66,53 @@ class BodyCalibration:
         alignment = judged.alignment
         if alignment is None or all(limb.source == "unknown" for limb in alignment.limbs.values()):
             return judged
-        self.alignment = alignment
-        self._held_at, self._groups = {}, {}
-        for place, limb in alignment.limbs.items():
-            held = self._holds.reference_of(place)
-            if held is not None and limb.source != "unknown":
-                track = tracks[setup.assignment.sensors[place]]
-                self._held_at[place] = max(held.time, held.end)
-                self._groups[place] = int(track.group[_row_at(track, 0.5 * (held.time + self._held_at[place]))])
+        before, known = self.alignment, {p: limb for p, limb in alignment.limbs.items() if limb.source != "unknown"}
+        at = {place: held for place in alignment.limbs if (held := self._holds.reference_of(place)) is not None}
+        held_at = {place: max(at[place].time, at[place].end) for place in known if place in at}
+        groups = {
+            place: int(track.group[_row_at(track, 0.5 * (at[place].time + end))])
+            for place, end in held_at.items()
+            for track in (tracks[setup.assignment.sensors[place]],)
+        }
+        worse: set[Place] = set() if before is None else worse_limbs(alignment, before)
+        if before is not None and worse:
+            worn = {place: tracks[sensor] for place, sensor in setup.assignment.sensors.items() if sensor in tracks}
+            kept = self._kept(before, worse, worn, at, solver.kept())
+            # The hold whose samples tell how the tags sit is still the one from before.
+            alignment = replace(before, limbs={**alignment.limbs, **{p: one.limb for p, one in kept.items()}})
+            held_at |= {place: one.held_at for place, one in kept.items()}
+            groups |= {place: one.group for place, one in kept.items()}
+            judged = judged._replace(alignment=alignment)
+        self.alignment, self._held_at, self._groups = alignment, held_at, groups
         solver.use(alignment, {p: {group: alignment.limbs[p].heading} for p, group in self._groups.items()})
         return judged
+
+    def _kept(
+        self,
+        before: Alignment,
+        worse: Collection[Place],
+        worn: Mapping[Place, SensorTrack],
+        at: Mapping[Place, Mark],
+        take_s: float,
+    ) -> dict[Place, _Kept]:
+        """Return the limbs of which a new hold tells less: it renews their headings, and their tags sit as before."""
+        holds = {mark: hold_all(worn, mark, take_s, required=False) for mark in {at[p] for p in worse if p in at}}
+        kept = {}
+        for mark, held in holds.items():
+            still = {p: hold for p, hold in held.items() if p in worse and at.get(p) == mark and hold.is_still()}
+            for place in still.keys() - misheld(before, mark.label, still):
+                limb, hold = before.limbs[place], still[place]
+                heading = heading_in(hold, mark.label, place, np.array(limb.sensor_from_segment))
+                fresh = replace(limb, heading=heading, spread=hold.spread)
+                kept[place] = _Kept(fresh, max(mark.time, mark.end), hold.group)
+        went_on = {place: one for place, one in kept.items() if self._groups.get(place) == one.group}
+        was = {place: before.limbs[place].heading for place in went_on}
+        turn = turn_between({place: one.limb.heading for place, one in went_on.items()}, was) or 0.0
+        for place in (set(worse) - kept.keys()) & self._groups.keys():  # who was silent turned with the others
+            limb = before.limbs[place]
+            turned = replace(limb, heading=wrapped(limb.heading + turn))
+            kept[place] = _Kept(turned, self._held_at[place], self._groups[place])
+        return kept
 
     def is_within(self, first: float) -> bool:
         """Return whether a take that begins at ``first`` has the samples of the reference hold in force, if any is."""

@@ -11,6 +11,7 @@ from studio.core import rotation
 from studio.core.body import Place
 from studio.core.errors import HeadingsUnknown, MovedDuringHold, PoseMissing
 from studio.core.sample import Correction
+from studio.core.strapping import strap_rule
 from studio.core.take import Alignment, Assignment, Calibration, CarriedAlignment
 from studio.storage.take_reader import read_take
 from tests.capture.known_suit import (
@@ -27,7 +28,7 @@ from tests.capture.known_suit import (
     start,
     told,
 )
-from tests.core.worn_sensors import BOW_HOLD, N_HOLD, sensor_of, worn_take
+from tests.core.worn_sensors import BOW_HOLD, N_HOLD, procedure, sensor_of, stream, worn_take
 
 AGAIN = replace(N_HOLD, time=12.0, end=15.0)
 
@@ -318,6 +319,54 @@ def test_a_sensor_that_started_anew_since_the_hold_carries_no_attitude(tmp_path,
         carried = carried_of((await session.stop_recording()).folder)
 
         assert set(carried.wearer_from_sensor) == set(LOWER) - {Place.LEFT_FOOT}
+        await session.disconnect()
+
+    run(story())
+
+
+@pytest.mark.parametrize("mounting", ["unknown", "strapped"])
+def test_an_n_pose_held_again_takes_nothing_from_what_the_bow_told(tmp_path, mounting):
+    time = np.arange(round(24.0 * 50) + 1) / 50
+    turn = rotation.about(2, np.radians(40.0) * np.clip(time - 10.0, 0, 1))
+    body = {place: rotation.multiply(turn, procedure(place, time, walking=0.0)) for place in LOWER}
+    worn, _ = worn_take(LOWER, 24.0, motion=body)
+    streams = tuple(
+        stream(
+            sensor_of(place),
+            rotation.multiply(body[place], rotation.inverse(strap_rule()[place])),
+            time,
+            first_arrival=row,
+            arrival_step=len(LOWER),
+        )
+        for row, place in enumerate(LOWER)
+    )
+    take = replace(worn, streams=streams, setup=replace(worn.setup, mounting=mounting))
+    pieces = told(take)
+
+    async def story():
+        link = HandFed(paced=False)
+        session = await connected(link, take, between(pieces, 0, 1))
+        _, first = await aligned(session, link, pieces)
+        await link.give(between(pieces, 8.5, 15.5))
+        events_of(session, events.Aligned)
+        again = await session.held(AGAIN)
+        await link.give(between(pieces, 15.5, 16.0))
+
+        _, pose = session.buffer.newest()
+        assert pose.measured == frozenset(LOWER)
+        if mounting == "strapped":
+            (event,) = events_of(session, events.Aligned)
+            assert event.alignment == again.alignment
+            for place, limb in again.alignment.limbs.items():
+                before = first.alignment.limbs[place]
+                assert (limb.source, limb.sensor_from_segment) == ("bow", before.sensor_from_segment)
+                turned = math.degrees(math.remainder(before.heading - limb.heading, 2 * math.pi))
+                assert turned == pytest.approx(40.0, abs=1.0)  # the wearer faces x in the newest hold
+            await link.give(between(pieces, 16.0, 20.0))
+            await start(session, tmp_path)
+            carried = carried_of((await session.stop_recording()).folder)
+            assert {limb.source for limb in carried.alignment.limbs.values()} == {"bow"}
+            assert set(carried.wearer_from_sensor) == set(LOWER)
         await session.disconnect()
 
     run(story())
