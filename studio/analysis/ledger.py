@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from studio.core.runs import longest_bridge
 from studio.core.sample import NO_CORRECTION, Flag, SensorId, Stream
 from studio.core.take import Take
 from studio.core.track import flags_of, in_force
@@ -27,6 +28,8 @@ class SensorLedger:
     """Stretches of lost frames."""
     longest_gap_s: float
     """s, between the samples on both sides of the longest stretch; 0 when nothing is lost."""
+    bridged_share: float
+    """Lost frames among those that count as measured, 0…1: of stretches short enough to be bridged."""
     rate_hz: float
     """Samples per second that arrived."""
     clipped: int
@@ -68,6 +71,7 @@ def _account(take: Take, stream: Stream) -> SensorLedger:
         lost=int(missing.sum()),
         gaps=int((missing > 0).sum()),
         longest_gap_s=_longest_gap(stream, missing),
+        bridged_share=_bridged_share(stream, missing),
         rate_hz=(len(stream) - 1) / span if span > 0 else 0.0,
         clipped=int((stream.flags & Flag.CLIPPED > 0).sum()),
         restarts=int(stream.epoch.max() - stream.epoch.min()) if len(stream) else 0,
@@ -83,6 +87,12 @@ def _longest_gap(stream: Stream, missing: NDArray[np.int64]) -> float:
     order = np.lexsort((stream.frame, stream.epoch))
     across = np.diff(stream.time[order])[missing[order[1:]] > 0]
     return float(across.max())
+
+
+def _bridged_share(stream: Stream, missing: NDArray[np.int64]) -> float:
+    short = (missing + 1) * stream.info.frame_s <= longest_bridge(stream.info.frame_s)
+    bridged = int(missing[short].sum())
+    return bridged / max(bridged + len(stream), 1)
 
 
 def _skew(stream: Stream, span: float) -> float:

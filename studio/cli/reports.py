@@ -18,7 +18,8 @@ from studio.storage.take_reader import ReadReport
 from studio.ui.fact_words import readable
 
 _HEADINGS = (
-    "sensor", "place", "samples", "lost", "gaps", "longest", "rate", "clipped", "battery", "skew", "calibration",
+    "sensor", "place", "samples", "lost", "gaps", "longest", "bridged",
+    "rate", "clipped", "battery", "skew", "calibration",
 )  # fmt: skip
 
 RECOVERED = (
@@ -128,6 +129,7 @@ def _cells(a: SensorLedger) -> tuple[str, ...]:
         str(a.lost),
         str(a.gaps),
         f"{a.longest_gap_s * 1000:.0f} ms" if a.lost else "–",
+        f"{a.bridged_share:.2%}",
         f"{a.rate_hz:.1f} Hz",
         str(a.clipped),
         f"{a.battery:.0%}" if math.isfinite(a.battery) else "–",

@@ -43,6 +43,9 @@ def sidecar(take: Take, motion: Motion | None, of_the_file: Mapping[str, Any]) -
             "attitude": motion.attitude,
             "alignment": _alignment(motion.alignment, take),
             "interpolated_share": {place.value: _share(motion, lost) for place, lost in motion.lost.items()},
+            "bridged_share_of_measured": {
+                place.value: _share_of(lost, motion.measured[place]) for place, lost in motion.lost.items()
+            },
             "notes": list(motion.notes),
         }
     return content
@@ -85,6 +88,7 @@ def _sensor(take: Take, stream: Stream, account: SensorLedger) -> dict[str, Any]
         "samples": account.samples,
         "lost": account.lost,
         "longest_gap_s": account.longest_gap_s,
+        "bridged_share": round(account.bridged_share, 6),
         "calibration": _calibration(calibrations[0]) if calibrations else None,
     }
 
@@ -120,6 +124,10 @@ def _limb(limb: LimbAlignment) -> dict[str, Any]:
 
 def _share(motion: Motion, lost: NDArray[np.bool_]) -> float:
     return round(float(lost.mean()), 6) if len(motion) else 0.0
+
+
+def _share_of(lost: NDArray[np.bool_], measured: NDArray[np.bool_]) -> float:
+    return round(float(lost[measured].mean()), 6) if measured.any() else 0.0
 
 
 def _finite(value: Any) -> Any:

@@ -48,3 +48,17 @@ def test_a_stored_calibration_is_said_to_correct_only_where_it_does(flags: int, 
     (account,) = ledger(replace(take, streams=(stream,), setup=replace(take.setup, calibrations=(stored,))))
 
     assert account.calibration == said
+
+
+def test_lost_frames_that_count_as_measured_are_told_from_those_of_long_silences() -> None:
+    """Stretches of 3 and 40 frames of 20 ms are bridged; a silence of two seconds is none of them."""
+    whole = taken(slice(None))
+    away = [*range(100, 103), *range(500, 540), *range(1000, 1200)]
+    present = np.setdiff1d(np.arange(len(whole.streams[0])), away)
+    stream = whole.streams[0]
+    values = {name: getattr(stream, name)[present] for name in stream.__dataclass_fields__ if name != "info"}
+
+    (account,) = ledger(replace(whole, streams=(replace(stream, **values),)))
+
+    assert account.lost == 243
+    assert account.bridged_share == pytest.approx(43 / (len(stream) - 200))

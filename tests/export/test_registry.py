@@ -57,6 +57,7 @@ def test_the_sidecar_says_what_a_reader_of_the_numbers_must_know(tmp_path, name,
     thigh, loose = said["sensors"]
     assert (thigh["sensor"], thigh["place"], thigh["samples"], thigh["lost"]) == (LEFT, "left_thigh", 47, 3)
     assert thigh["longest_gap_s"] == pytest.approx(0.08)  # between the samples on both sides of three lost ones
+    assert thigh["bridged_share"] == pytest.approx(3 / 50)
     assert thigh["calibration"]["method"] == "whole turns"
     assert (loose["sensor"], loose["place"], loose["calibration"]) == (RIGHT, None, None)
     assert thigh["calibration"]["temperature_c"] is None  # unknown, and JSON has no NaN
@@ -74,6 +75,24 @@ def test_the_sidecar_of_what_was_solved_says_how(tmp_path, name):
     assert solved["alignment"]["age_at_end_of_take_s"] == pytest.approx(small_take().duration() - 0.4)
     limb = solved["alignment"]["limbs"]["left_thigh"]
     assert limb == {"heading_source": "bow", "heading_sigma_deg": pytest.approx(2), "spread_deg": pytest.approx(0.4)}
+
+
+def test_the_sidecar_says_how_much_of_what_counts_as_measured_is_bridged(tmp_path):
+    whole = material()
+    lost, measured = np.zeros(200, bool), np.ones(200, bool)
+    lost[50:90], measured[80:] = True, False  # 30 of 80 are bridged, 10 are beyond any bridge
+    thigh = Place.LEFT_THIGH
+    motion = replace(
+        whole.motion,
+        lost={**whole.motion.lost, thigh: lost},
+        measured={**whole.motion.measured, thigh: measured, Place.HEAD: ~np.ones(200, bool)},
+    )
+
+    _, beside = export_file("joints", replace(whole, motion=motion), Wish("plain"), tmp_path / "walk.csv")
+
+    solved = json.loads(beside.read_text(encoding="utf-8"))["solved"]
+    assert solved["bridged_share_of_measured"]["left_thigh"] == pytest.approx(30 / 80)
+    assert solved["bridged_share_of_measured"]["head"] == 0.0
 
 
 def test_the_sidecar_of_the_joints_explains_every_column(tmp_path):
