@@ -9,7 +9,7 @@ from typing import Final
 from studio.acquisition.dialects.dialect import Reading, Traits
 from studio.acquisition.health import SensorHealth
 from studio.acquisition.sensor_line import SensorLine, Spot, Verdict
-from studio.core.sample import Correction, Sample, SensorId, SensorInfo, Vector
+from studio.core.sample import Correction, Sample, SensorId, SensorInfo, Vector, is_plausible_correction
 from studio.core.timeline import SharedClock
 
 CLIPPED = 8  # Flag.CLIPPED
@@ -145,7 +145,11 @@ class SensorTracker:
         if len(self._rows) < 4:
             return
         correction = Correction(self._rows[0], (self._rows[1], self._rows[2], self._rows[3]))
-        if correction != self.info.correction:
+        if not is_plausible_correction(correction):  # no calibration could take it back
+            self._rows.clear()  # the tag may be asked again
+            self.info = replace(self.info, correction=None)
+            self._tell("coefficients implausible", {"calibration_crc": crc})
+        elif correction != self.info.correction:
             self.info = replace(self.info, correction=correction)
             self._tell("coefficients", {"calibration_crc": crc})
 
@@ -160,8 +164,8 @@ class LinkTracker:
     ``found`` number · ``number`` before, number · ``duplicate number`` number, sensors ·
     ``address`` before, address · ``gap`` from, to, frames · ``reboot`` epoch, from, to ·
     ``frame length`` epoch, from, to · ``clock stepped`` time · ``shared clock restarted`` time ·
-    ``coefficients`` calibration_crc · ``coefficients outdated`` calibration_crc; all but those of
-    several sensors with ``sensor``.
+    ``coefficients`` calibration_crc · ``coefficients outdated`` calibration_crc · ``coefficients implausible``
+    calibration_crc; all but those of several sensors with ``sensor``.
     """
 
     def __init__(self, link: str, traits: Traits) -> None:

@@ -15,6 +15,9 @@ Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
 
 NAN = float("nan")
+GAINS = (0.1, 10.0)  # singular values of a gain matrix; those of gyroscopes are within 3 % of 1
+LARGEST_RATE = 1000.0  # rad/s; 57,000 °/s, ten times any gyroscope
+
 MISSING_VECTOR: Vector = (NAN, NAN, NAN)
 MISSING_QUATERNION: Quaternion = (NAN, NAN, NAN, NAN)
 
@@ -74,6 +77,15 @@ class Correction:
     """rad/s, sensor axes."""
     gain: tuple[Vector, Vector, Vector]
     """3 x 3, rows; the identity until calibrated."""
+
+
+def is_plausible_correction(correction: Correction) -> bool:
+    """Return whether a gyroscope can need this correction: its gain has an inverse that is one, too."""
+    gain = np.array(correction.gain)
+    if not np.isfinite(gain).all() or not max(map(abs, correction.offset)) <= LARGEST_RATE:
+        return False
+    values = np.linalg.svd(gain, compute_uv=False)
+    return bool(GAINS[0] <= values[-1] and values[0] <= GAINS[1])
 
 
 NO_CORRECTION = Correction((0.0, 0.0, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)))

@@ -10,9 +10,9 @@ from typing import Any, TypeVar
 import msgspec
 import numpy as np
 
-from studio.core.sample import SensorInfo
+from studio.core.sample import SensorInfo, is_plausible_correction
 from studio.core.take import Mark, Setup
-from studio.storage.limits import LONGEST_LABEL, is_plausible_correction, plausible_utc
+from studio.storage.limits import LONGEST_LABEL, plausible_utc
 
 T = TypeVar("T")
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from studio.core.runs import LONGEST_BRIDGE
-from studio.core.sample import Correction, SensorInfo, Stream
+from studio.core.sample import LARGEST_RATE, SensorInfo, Stream, is_plausible_correction
 from studio.core.take import Mark, Setup
 
 LONGEST_TAKE: Final = 7 * 86400.0  # s; a week
@@ -26,8 +26,6 @@ FRAMES_PER_SAMPLE: Final = 10  # beyond that: nine of ten samples lost
 LARGEST_COUNT: Final = 1 << 52  # of frames; exact as float64
 MOST_RESTARTS: Final = 1 << 30
 STATURES: Final = (0.3, 2.8)  # m; as in resources/map.schema.json
-GAINS: Final = (0.1, 10.0)  # singular values of a gain matrix; those of gyroscopes are within 3 % of 1
-LARGEST_RATE: Final = 1000.0  # rad/s; 57,000 °/s, ten times any gyroscope
 LARGEST_FORCE: Final = 1e5  # m/s²; 10,000 g
 LARGEST_NUMBER: Final = 1e12  # seconds since 1970 fit, microseconds do not
 LARGEST_FACT: Final = 1e9  # in a setup; all are SI or counts
@@ -47,15 +45,6 @@ def is_plausible_time(time: float) -> bool:
 def is_plausible_mark(mark: Mark) -> bool:
     """Return whether a mark lies in or near a take; only its end may be unknown."""
     return is_plausible_time(mark.time) and (math.isnan(mark.end) or is_plausible_time(mark.end))
-
-
-def is_plausible_correction(correction: Correction) -> bool:
-    """Return whether a gyroscope can need this correction: its gain has an inverse that is one, too."""
-    gain = np.array(correction.gain)
-    if not np.isfinite(gain).all() or not max(map(abs, correction.offset)) <= LARGEST_RATE:
-        return False
-    values = np.linalg.svd(gain, compute_uv=False)
-    return bool(GAINS[0] <= values[-1] and values[0] <= GAINS[1])
 
 
 def sensor_fault(info: SensorInfo) -> str:

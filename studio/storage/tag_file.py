@@ -8,11 +8,10 @@ import platformdirs
 
 from studio.core.body import Place
 from studio.core.errors import CalibrationUnreadable, FolderNotWritable
-from studio.core.sample import SensorId
+from studio.core.sample import SensorId, is_plausible_correction
 from studio.core.take import Calibration
 from studio.storage import documents
 from studio.storage.filesystem import FOLDER_MODE
-from studio.storage.limits import is_plausible_correction
 from studio.storage.names import slug
 
 SCHEMA: Final = 1

@@ -28,9 +28,9 @@ def test_a_packet_in_place_of_a_sample_counts_and_is_flagged_for_filling():
     assert tracker.infos[SENSOR].facts == {"link": "receiver", **facts}
 
 
-def coefficient(tag: Tag, frame: int, index: int, crc: int = 99) -> tuple[Reading, float]:
+def coefficient(tag: Tag, frame: int, index: int, crc: int = 99, rows=ROWS) -> tuple[Reading, float]:
     nothing = (float("nan"),) * 3
-    x, y, z = ROWS[index]
+    x, y, z = rows[index]
     facts = {"coefficients": index, "coefficient_x": x, "coefficient_y": y, "coefficient_z": z, "calibration_crc": crc}
     reading = tag.reading(frame, orientation=(float("nan"),) * 4, rate=nothing, acceleration=nothing, facts=facts)
     return reading, tag.measured(frame)
@@ -45,6 +45,25 @@ def test_four_rows_with_one_crc_are_the_correction_in_force():
 
     assert tracker.infos[SENSOR].correction == Correction(ROWS[0], ROWS[1:])
     assert kinds(tracker) == ["found", "coefficients"]
+
+
+@pytest.mark.parametrize(
+    "rows",
+    [
+        ((0.0, 0.0, 0.0),) * 4,
+        ((float("nan"), 0.0, 0.0), *ROWS[1:]),
+        (ROWS[0], *(tuple(100.0 * c for c in row) for row in ROWS[1:])),
+    ],
+)
+def test_a_correction_that_no_gyroscope_needs_is_unknown_until_the_tag_tells_another(rows):
+    tracker, tag = link(), Tag()
+
+    samples(tracker, [coefficient(tag, k, k, rows=rows) for k in range(4)])
+    assert tracker.infos[SENSOR].correction is None
+    samples(tracker, [coefficient(tag, 4 + k, k) for k in range(4)])
+
+    assert tracker.infos[SENSOR].correction == Correction(ROWS[0], ROWS[1:])
+    assert kinds(tracker) == ["found", "coefficients implausible", "coefficients"]
 
 
 def test_rows_of_two_calibrations_are_never_mixed():
