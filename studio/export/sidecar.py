@@ -15,6 +15,7 @@ from studio.core.body import PLACES
 from studio.core.pose import Motion
 from studio.core.sample import Stream
 from studio.core.take import Alignment, Calibration, LimbAlignment, Take
+from studio.core.track import flags_of, in_force
 from studio.export.file_target import PROGRAM
 
 
@@ -79,7 +80,8 @@ def digest_of(take: Take) -> str:
 
 
 def _sensor(take: Take, stream: Stream, account: SensorLedger) -> dict[str, Any]:
-    calibrations = [known for known in take.setup.calibrations if known.sensor == stream.info.sensor]
+    stored = {known.sensor: known for known in take.setup.calibrations}.get(stream.info.sensor)
+    calibration = in_force(stream.info, flags_of(stream), stored)
     return {
         "sensor": stream.info.sensor,
         "label": stream.info.label,
@@ -89,7 +91,7 @@ def _sensor(take: Take, stream: Stream, account: SensorLedger) -> dict[str, Any]
         "lost": account.lost,
         "longest_gap_s": account.longest_gap_s,
         "bridged_share": round(account.bridged_share, 6),
-        "calibration": _calibration(calibrations[0]) if calibrations else None,
+        "calibration": None if calibration is None else _calibration(calibration),
     }
 
 

@@ -18,7 +18,7 @@ def stream_of(sensor, frames, epochs, first_arrival=0, every=1):
     time = (frame - min(frames, default=0)) * 0.02
     row = np.arange(count, dtype=np.float64)[:, None]
     return Stream(
-        info=SensorInfo(sensor, 0.02, label="Ä"),
+        info=SensorInfo(sensor, 0.02, label="Ä", correction=NO_CORRECTION),
         arrival=first_arrival + every * np.arange(count),
         epoch=epoch,
         frame=frame,

@@ -8,6 +8,7 @@ import pytest
 
 from studio.core.body import Place
 from studio.core.errors import CannotWrite, NothingToExport, ReadBackDiffers
+from studio.core.sample import Flag
 from studio.core.take import Alignment, LimbAlignment
 from studio.export import bvh, csv_tables
 from studio.export.material import Material, Wish
@@ -61,6 +62,19 @@ def test_the_sidecar_says_what_a_reader_of_the_numbers_must_know(tmp_path, name,
     assert thigh["calibration"]["method"] == "whole turns"
     assert (loose["sensor"], loose["place"], loose["calibration"]) == (RIGHT, None, None)
     assert thigh["calibration"]["temperature_c"] is None  # unknown, and JSON has no NaN
+
+
+def test_the_sidecar_names_no_calibration_that_is_not_in_force(tmp_path):
+    """The tag corrects by itself and did not tell how."""
+    whole = material()
+    thigh, loose = whole.take.streams
+    flags = np.full(len(thigh), Flag.CALIBRATED, np.uint32)
+    corrected = replace(thigh, info=replace(thigh.info, orientation="integrated", correction=None), flags=flags)
+    take = replace(whole.take, streams=(corrected, loose))
+
+    _, beside = export_file("raw", replace(whole, take=take), Wish("plain"), tmp_path / "walk.csv")
+
+    assert json.loads(beside.read_text(encoding="utf-8"))["sensors"][0]["calibration"] is None
 
 
 @pytest.mark.parametrize("name", ["bvh", "joints", "orientations"])
