@@ -107,7 +107,7 @@ class LiveTrack:
                 self._bridge(last, sample, missing, silent_for)
                 return
         else:
-            silent_for = sample.time - last.time
+            silent_for = max(sample.time - last.time, self.info.frame_s)  # clocks are fitted anew, and step back
         self.run += 1
         known = math.isfinite(last.orientation[0] + sample.orientation[0])
         if known and goes_on(self.info, sample.epoch == last.epoch, silent_for, self._offset_sigma()):

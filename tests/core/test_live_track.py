@@ -172,3 +172,19 @@ def test_a_tag_that_corrects_by_itself_and_does_not_tell_how_is_not_corrected_tw
 
     assert np.abs(off_heading(silently, truth)[1]).max() < 3.0
     assert np.abs(off_heading(corrected, truth)[1]).max() > 30.0
+
+
+@pytest.mark.parametrize("step_back", [0.0, 1.0, 5.0])
+def test_a_device_whose_clock_is_fitted_anew_when_it_starts_again_goes_on(step_back):
+    sent, truth = swinging(SensorInfo(ID, FRAME, orientation="world", common_world=True))
+    row = 700
+    epoch, time = sent.epoch.copy(), sent.time.copy()
+    epoch[row:] += 1
+    time[row:] -= time[row] - time[row - 1] + step_back
+
+    live, _, attitude, _, _ = followed(replace(sent, orientation=truth, epoch=epoch, time=time))
+
+    tilt, heading = off_heading(attitude, truth)
+    assert live.group == 0
+    assert np.isfinite(attitude).all()
+    assert max(np.abs(heading[200:] - heading[200]).max(), tilt[200:].max()) < 3.0
