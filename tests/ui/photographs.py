@@ -14,6 +14,7 @@ from typing import Any
 
 os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
 
+from PySide6.QtGui import QImage
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
@@ -25,6 +26,7 @@ from tests.ui.running_studio import WALKS, running_studio
 PICTURES = Path(__file__).resolve().parents[2] / "resources" / "manual" / "pictures"
 PAGES = ("connect", "assign", "calibrate", "settings", "diagnostics")
 PATIENCE = 60.0  # s
+SMALLEST = 0  # of a PNG: the most compression
 LONG = "Gait after total knee arthroplasty, second visit, without shoes, slow"
 
 
@@ -38,7 +40,8 @@ class Camera:
         """Let the window settle for ``wait`` ms and keep a picture."""
         QTest.qWait(wait)
         file = self._folder / f"{name}-{self._ending}.png"
-        assert self._studio.window.grab().save(str(file)), file
+        picture = self._studio.window.grab().toImage().convertToFormat(QImage.Format.Format_RGB888)
+        assert picture.save(str(file), quality=SMALLEST), file
         sys.stdout.write(f"{file.name}\n")
 
 
