@@ -23,6 +23,7 @@ from studio.core.take import Alignment, LimbAlignment, Mounting
 
 UPRIGHT = math.radians(10.0)  # a trunk that tilts less than this did not bow; a bow tilts it by 20° to 60°
 RAISED = math.radians(60.0)  # arms in T-pose tilt by 90°, in the bow by 30° to 55°
+BENT_HIPS = math.radians(20.0)  # of the thighs; in T-pose they hang
 CONTRADICTION = math.radians(45.0)  # three times what a strap put on by eye is worth
 AGREEMENT = math.radians(30.0)  # two times that
 BETTER = math.radians(15.0)  # a bow tilts by 25° and more
@@ -34,6 +35,8 @@ THINNING = 5  # frames
 LONG_ENOUGH = 0.5  # s in all
 LEANING, CROUCHED = math.radians(20.0), math.radians(30.0)  # trunk and knees; nobody does that most of the time
 
+_BACK = (Place.HEAD, Place.CHEST)
+_THIGHS = (Place.LEFT_THIGH, Place.RIGHT_THIGH)
 _TRUNK = (Place.HEAD, Place.CHEST, Place.PELVIS)
 _KNEES = ((Place.LEFT_THIGH, Place.LEFT_SHANK), (Place.RIGHT_THIGH, Place.RIGHT_SHANK))
 _ELBOWS = ((Place.LEFT_UPPER_ARM, Place.LEFT_FOREARM), (Place.RIGHT_UPPER_ARM, Place.RIGHT_FOREARM))
@@ -107,8 +110,10 @@ def _thinned(motion: Motion) -> Motion:
 def _refuse_raised_arms(first: Mapping[Place, Hold], bow: Mapping[Place, Hold]) -> None:
     tilts = {place: _angle(first[place].up(), hold.up()) for place, hold in bow.items() if place in first}
     trunk = [tilts[place] for place in _TRUNK if place in tilts]
+    # A pelvis may stay upright while the back bends, and nobody bends the hips for a T-pose.
+    is_bow = not any(place in tilts for place in _BACK) or any(tilts.get(place, 0.0) >= BENT_HIPS for place in _THIGHS)
     raised = tuple(place.value for place in ARMS if tilts.get(place, 0.0) > RAISED)
-    if trunk and max(trunk) < UPRIGHT and len(raised) > 1:
+    if trunk and max(trunk) < UPRIGHT and not is_bow and len(raised) > 1:
         raise PoseNotHeld("bow", raised, "t")
 
 

@@ -69,6 +69,23 @@ def test_arms_may_be_raised_high_while_the_trunk_bows():
     assert solve(take).motion.alignment.limbs[Place.LEFT_HAND].source == "bow"
 
 
+@pytest.mark.parametrize(
+    ("trunk", "legs"),
+    [(Place.PELVIS, (40.0, 40.0)), (Place.CHEST, (40.0, 40.0)), (Place.CHEST, (0.0, 40.0)), (Place.PELVIS, (0.0, 0.0))],
+)
+def test_a_bow_out_of_the_hips_or_above_the_only_tag_of_the_trunk_is_no_t_pose(trunk, legs):
+    angles = dict.fromkeys(PRESETS["upper"][2:], 85.0) | {trunk: -9.0}
+    angles |= dict(zip((Place.LEFT_THIGH, Place.RIGHT_THIGH), legs, strict=True))
+    ramp = np.clip((TIME - 4.5) / 1.5, 0, 1) - np.clip((TIME - 8.0) / 1.5, 0, 1)
+    body = {
+        place: rotation.multiply(reference_pose("n")[SEGMENT_OF[place]], rotation.about(2, np.radians(degrees) * ramp))
+        for place, degrees in angles.items()
+    }
+    take, _ = worn_take(tuple(body), SECONDS, motion=body)
+
+    assert solve(take).motion.alignment.limbs[Place.LEFT_UPPER_ARM].source == "bow"
+
+
 def test_arms_alone_may_bow_as_they_like():
     arms = PRESETS["upper"][2:]
     motion = {place: m for place, m in from_pose_to_pose("n", "t").items() if place in arms}
