@@ -81,7 +81,7 @@ def align(
     # Who was silent during the hold has no heading.
     limbs = {place: LimbAlignment(NO_MOUNTING, 0.0, "unknown", math.pi, 0.0) for place in worn}
     for place, hold in first.items():
-        if not worn[place].levelled:
+        if not hold.levelled:
             continue
         elsewhere = {label: holds[place] for label, holds in others.items() if place in holds}
         limbs[place] = _align_limb(place, hold, reference.label, elsewhere, facing.get(place), mounting)
@@ -90,7 +90,7 @@ def align(
 
 def _felt(worn: Mapping[Place, SensorTrack], holds: Mapping[Place, Hold]) -> dict[Place, Hold]:
     """Return the holds of sensors that feel gravity."""
-    return {place: hold for place, hold in holds.items() if worn[place].info.has_acceleration}
+    return {place: hold for place, hold in holds.items() if worn[place].info.has_acceleration and hold.levelled}
 
 
 def require_headings(alignment: Alignment) -> None:

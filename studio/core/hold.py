@@ -36,6 +36,8 @@ class Hold:
     """rad/s, root mean square."""
     group: int
     """Heading group of the track."""
+    levelled: bool
+    """False: nothing told of gravity meanwhile, so that world z need not point up."""
 
     def is_still(self) -> bool:
         """Return whether the limb moved so little that the hold can be used."""
@@ -105,4 +107,5 @@ def _hold(track: SensorTrack, still: NDArray[np.intp], whole: NDArray[np.intp]) 
         largest=float(deviation.max()),
         speed=float(np.sqrt(np.mean(track.speed[still] ** 2))) if len(still) > 1 else 0.0,
         group=int(track.group[still[0]]),
+        levelled=bool(track.levelled[rows].any()),
     )

@@ -17,7 +17,7 @@ from studio.core.root import Root, put_under_hold
 from studio.core.runs import longest_bridge
 from studio.core.sample import Flag, Sample, SensorId, SensorInfo, Stream
 from studio.core.take import Alignment, Calibration, Setup, Take
-from studio.core.track import SensorTrack
+from studio.core.track import SensorTrack, tells_gravity
 
 EVER = (float("-inf"), float("inf"))  # s
 CHUNK = 1024  # frames at a time: the working set stays in the cache
@@ -66,7 +66,7 @@ class Solver:
             self._tracks[info.sensor].info = info
             return
         self._tracks[info.sensor] = LiveTrack(info, self._attitude, self._calibrations.get(info.sensor))
-        self._history[info.sensor] = Rows(12)
+        self._history[info.sensor] = Rows(15)
 
     def forget_body(self) -> None:
         """End the alignment: frames are no poses until there is another one."""
@@ -114,7 +114,7 @@ class Solver:
         if sensor not in self._tracks:
             return
         track = self._tracks[sensor] = LiveTrack(self._tracks[sensor].info, self._attitude, calibration)
-        self._history[sensor] = Rows(12)
+        self._history[sensor] = Rows(15)
         for sample in arrived:
             if track.push(sample):
                 self._remember(sample, track)
@@ -278,16 +278,19 @@ class Solver:
 
     def _remember(self, sample: Sample, track: LiveTrack) -> None:
         history = self._history[sample.sensor]
-        history.append(sample.time, *track.attitude, *sample.orientation, track.speed, track.run, track.group)
+        seen = (*track.attitude, *sample.orientation, track.speed, track.run, track.group)
+        history.append(sample.time, *seen, *sample.acceleration)
         history.forget(sample.time - self._keep_s, FORGOTTEN_AT_ONCE)
 
     def _track(self, sensor: SensorId, spans: Sequence[tuple[float, float]]) -> SensorTrack:
         live, kept = self._tracks[sensor], self._history[sensor].values()
+        levelled = tells_gravity(kept[:, 12:], kept[:, 9]) & live.info.has_acceleration | (live.estimator == "device")
         if live.info.common_world:
             spans = [(min(start for start, _ in spans), max(end for _, end in spans))]
         if EVER not in spans:
             time = kept[:, 0]
-            kept = kept[np.any([(time >= start) & (time <= end) for start, end in spans], axis=0)]
+            looked_at = np.any([(time >= start) & (time <= end) for start, end in spans], axis=0)
+            kept, levelled = kept[looked_at], levelled[looked_at]
         return SensorTrack(
             info=live.info,
             estimator=live.estimator,
@@ -300,7 +303,7 @@ class Solver:
             group=kept[:, 11].astype(np.int32),
             offset=np.zeros(3),
             offset_sigma=float("nan"),
-            levelled=live.info.has_acceleration or live.estimator == "device",
+            levelled=levelled,
         )
 
 

@@ -80,12 +80,14 @@ def level_by_straps(
         if mark.label not in REFERENCE_POSES:
             continue
         for place, hold in hold_all(worn, mark, take_s, required=False).items():
-            if worn[place].levelled or not hold.is_still():
+            if hold.levelled or not hold.is_still():
                 continue
             up_in_segment = rotation.rotate(rotation.inverse(reference_pose(mark.label)[SEGMENT_OF[place]]), UP)
             believed_up = rotation.rotate(hold.attitude, rotation.rotate(strap_rule()[place], up_in_segment))
             track = levelled[place]
             turned = rotation.multiply(levelling(believed_up), worn[place].attitude)
             in_group = (track.group == hold.group)[:, None]
-            levelled[place] = replace(track, attitude=np.where(in_group, turned, track.attitude), levelled=True)
+            levelled[place] = replace(
+                track, attitude=np.where(in_group, turned, track.attitude), levelled=track.levelled | in_group[:, 0]
+            )
     return levelled

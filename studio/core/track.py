@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from studio.core import rest, rotation
 from studio.core.attitude import open_estimator
+from studio.core.frames import GRAVITY
 from studio.core.runs import Run, chained, has_turning, runs_of, uses_wire_quaternions
 from studio.core.sample import NO_CORRECTION, Flag, SensorId, SensorInfo, Stream
 from studio.core.take import Calibration, Take
@@ -17,6 +18,10 @@ RAW_OFFSET_SIGMA = math.radians(20.0) / math.sqrt(3.0)  # rad/s; MPU-6050 data s
 FRESH_OFFSET_SIGMA = math.radians(0.03)  # rad/s; measured at rest since power-on (0.001), warming up a little since
 STORED_OFFSET_SIGMA = math.radians(0.05)  # rad/s; a stored offset after some minutes of warming up
 DEVICE_OFFSET_SIGMA = math.radians(1.0)  # rad/s; a device with a filter of its own tracks its offset
+GRAVITY_RANGE = 0.2  # of g; a person who holds still, and an accelerometer off by 1 % to 3 %
+TURNING = math.radians(10.0)  # rad/s; 0.2° a frame tilts gravity by more than an accelerometer's noise
+FEWEST_TURNING = 25  # frames; 0.5 s at 50 Hz
+MOST_REPEATED = 0.95  # of the frames in which the sensor turned
 LARGEST_CARRY = math.radians(2.0)  # what an offset may have turned a tag's own quaternion by during a gap
 
 
@@ -45,12 +50,29 @@ class SensorTrack:
     """(3,), rad/s, subtracted after the sensor's own correction."""
     offset_sigma: float
     """rad/s, standard uncertainty of the offset, largest axis."""
-    levelled: bool = True
-    """False: the sensor tells nothing of gravity, so that world z need not point up."""
+    levelled: NDArray[np.bool_]
+    """(n,), whether the frame tells of gravity; a hold without any such frame does not know what is up."""
 
     def rows(self, from_s: float, to_s: float) -> NDArray[np.intp]:
         """Return the frames between two times."""
         return np.flatnonzero((self.time >= from_s) & (self.time <= to_s))
+
+
+def tells_gravity(acceleration: NDArray[np.float64], speed: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Return in which frames (n,) an accelerometer felt about one g; in none when it gave one value while turning.
+
+    Parameters
+    ----------
+    acceleration : (n, 3), m/s², sensor axes; NaN where nothing is known
+    speed : (n,), rad/s
+    """
+    size = np.linalg.norm(acceleration, axis=1)
+    felt = np.abs(size - GRAVITY) <= GRAVITY_RANGE * GRAVITY  # False for NaN
+    turning = speed[1:] > TURNING
+    repeated = (acceleration[1:] == acceleration[:-1]).all(axis=1)[turning]
+    # One at a fourth of the gyroscope's rate repeats three of four.
+    is_frozen = len(repeated) >= FEWEST_TURNING and repeated.mean() > MOST_REPEATED
+    return np.asarray(felt & (not is_frozen))
 
 
 def attitude_at(track: SensorTrack, time: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -199,6 +221,8 @@ def _joined(
     group = np.repeat(np.arange(len(chains), dtype=np.int32), lengths)
     resumed = np.flatnonzero(np.diff(silent.astype(np.int8), prepend=0) < 0)
     run = group + np.searchsorted(resumed, np.arange(len(silent)), side="right")
+    speed = np.linalg.norm(join([chain.increments for chain in chains], 3), axis=1) / info.frame_s
+    levelled = tells_gravity(join([chain.acceleration for chain in chains], 3), speed) & info.has_acceleration
     kept = ~silent & np.isfinite(attitude).all(axis=1)  # what an estimator cannot say is no attitude
     return SensorTrack(
         info=info,
@@ -206,11 +230,11 @@ def _joined(
         time=join([chain.time for chain in chains], 0).reshape(-1)[kept],
         attitude=attitude[kept],
         device=join([chain.orientation for chain in chains], 4)[kept],
-        speed=np.linalg.norm(join([chain.increments for chain in chains], 3), axis=1)[kept] / info.frame_s,
+        speed=speed[kept],
         lost=join([chain.lost.astype(np.float64) for chain in chains], 0).reshape(-1)[kept] > 0,
         run=run[kept].astype(np.int32),
         group=group[kept],
         offset=offset,
         offset_sigma=sigma,
-        levelled=info.has_acceleration or name == "device",
+        levelled=levelled[kept] | (name == "device"),
     )

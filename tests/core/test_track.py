@@ -78,7 +78,7 @@ def test_a_gyroscope_alone_is_integrated_whatever_filter_was_asked_for():
     for wanted in ("vqf", "gyro", "device"):
         track = solve_tracks(alone, SolveOptions(attitude=wanted))[sensor_of(THIGH)]
         assert track.estimator == "gyro"
-        assert not track.levelled
+        assert not track.levelled.any()
         turned = rotation.multiply(rotation.inverse(track.attitude[500]), track.attitude[700])
         sensor = rotation.multiply(truth[THIGH], rotation.inverse(strap_rule()[THIGH]))
         true = rotation.multiply(rotation.inverse(sensor[500]), sensor[700])
@@ -206,3 +206,30 @@ def test_the_strap_rule_is_not_asked_where_nobody_said_that_tags_are_strapped():
 
     with pytest.raises(HeadingsUnknown):
         solve(alone)
+
+
+def frozen(acceleration):
+    return np.tile(acceleration[:1], (len(acceleration), 1))
+
+
+@pytest.mark.parametrize("method", ["offline", "live"])
+@pytest.mark.parametrize("broken", [lambda a: np.full_like(a, np.nan), np.zeros_like, lambda a: 1.3 * a, frozen])
+def test_an_accelerometer_that_feels_no_gravity_is_not_believed_and_the_limb_is_unknown(method, broken):
+    take, _ = worn_take(LOWER, 20.0)
+    take = changed(take, THIGH, lambda s: replace(s, acceleration=broken(s.acceleration)))
+
+    motion = solve(take, SolveOptions(method=method)).motion
+
+    unknown = {place for place, limb in motion.alignment.limbs.items() if limb.source == "unknown"}
+    assert unknown == {THIGH}
+    assert not motion.measured[THIGH].any()
+
+
+@pytest.mark.parametrize("method", ["offline", "live"])
+def test_an_accelerometer_at_a_fourth_of_the_rate_of_the_gyroscope_is_believed(method):
+    take, _ = worn_take(LOWER, 20.0)
+    rarely = changed(take, THIGH, lambda s: replace(s, acceleration=s.acceleration[np.arange(len(s)) // 4 * 4]))
+
+    motion = solve(rarely, SolveOptions(method=method)).motion
+
+    assert motion.alignment.limbs[THIGH].source == "bow"
