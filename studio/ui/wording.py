@@ -127,7 +127,7 @@ TEMPLATES = _by_id(
         "The take holds no reference pose.",
         "In {take_s} nobody marked when the person stood still in a known pose, "
         "so the sensors cannot be related to the body.",
-        "Say when it was held, for example --pose n=2..5 for an N-pose from second 2 to second 5.",
+        "Calibrate the body before recording; on the command line, say when it was held: --pose n=2..5.",
     ),
     Message(
         "cal.no_sensor",
