@@ -115,7 +115,7 @@ def test_a_single_tag_turns_its_segment_and_has_no_joint(tmp_path):
     assert bvh.code == 0
     assert read_bvh(tmp_path / "head.bvh").names[0] == "Hips"
     assert table.code == 1
-    assert table.err.startswith("There is nothing to export. The take holds no joint angles: an angle needs the sensors ")
+    assert table.err.startswith("There is nothing to export. The take holds no joint angles: an angle needs ")
     assert table.err.count("\n") == 1
     assert not (tmp_path / "joints.csv").exists()
 
