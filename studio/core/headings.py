@@ -57,15 +57,33 @@ def headings_of(
         found = {p: {first[p].group: alignment.limbs[p].heading} if p in first else {} for p in limbs}
     else:
         found = {place: _heading_at(worn[place], place, carried) for place in limbs}
-    holds = []
-    for mark in poses:
-        if mark.label in REFERENCE_POSES:
-            everyone = hold_all(worn, mark, take_s, required=False)
-            # Who stood otherwise than the pose says is not told a heading by it.
-            usable = set(limbs) & everyone.keys() - misheld(alignment, mark.label, everyone)
-            holds.append(_held(mark.label, {p: everyone[p] for p in limbs if p in usable}, alignment))
+    holds = [held for _, held in _further_holds(worn, alignment, poses, take_s)]
     while any(_learn(found, held) for held in holds):  # what one hold tells may be what another needs
         pass
+    return found
+
+
+def drifted(
+    worn: Mapping[Place, SensorTrack],
+    alignment: Alignment,
+    poses: Sequence[Mark],
+    take_s: float,
+    headings: GroupHeadings,
+) -> list[tuple[Mark, dict[Place, float]]]:
+    """Return for each hold how far, rad, headings in force are off in it, of the limbs beyond three sigma.
+
+    Where the wearer faced is told by the limbs together; nothing is corrected by it.
+    """
+    found = []
+    for mark, held in _further_holds(worn, alignment, poses, take_s):
+        known = {p: headings[p][group] for p, group in held.groups.items() if group in headings.get(p, {})}
+        turn = turn_between(known, held.facing_x)
+        if turn is None:
+            continue
+        off = {place: wrapped(known[place] - held.facing_x[place] - turn) for place in known}
+        limbs = {p: angle for p, angle in off.items() if abs(angle) > 3 * alignment.limbs[p].heading_sigma}
+        if limbs:
+            found.append((mark, limbs))
     return found
 
 
@@ -89,6 +107,20 @@ def turn_between(before: Mapping[Place, float], after: Mapping[Place, float]) ->
 def wrapped(angle: float) -> float:
     """Return an angle in rad between -π and π."""
     return math.remainder(angle, 2 * math.pi)
+
+
+def _further_holds(
+    worn: Mapping[Place, SensorTrack], alignment: Alignment, poses: Sequence[Mark], take_s: float
+) -> list[tuple[Mark, _Held]]:
+    limbs = [place for place in worn if place in alignment.limbs and alignment.limbs[place].source != "unknown"]
+    holds = []
+    for mark in poses:
+        if mark.label in REFERENCE_POSES:
+            everyone = hold_all(worn, mark, take_s, required=False)
+            # Who stood otherwise than the pose says is not told a heading by it.
+            usable = set(limbs) & everyone.keys() - misheld(alignment, mark.label, everyone)
+            holds.append((mark, _held(mark.label, {p: everyone[p] for p in limbs if p in usable}, alignment)))
+    return holds
 
 
 def _held(pose: str, holds: Mapping[Place, Hold], alignment: Alignment) -> _Held:

@@ -5,6 +5,7 @@ in a loop over the samples in their order of arrival; ``offline`` may look ahead
 to one regular grid.
 """
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
@@ -17,7 +18,7 @@ from studio.core.alignment import align, refused_holds, require_headings, worse_
 from studio.core.body import REFERENCE_POSES, Place, Skeleton
 from studio.core.errors import AlignmentError, HeadingsUnknown, MovedDuringHold, NoSensorWorn, PoseMissing, PoseTooShort
 from studio.core.full_body import FullBody
-from studio.core.headings import GroupHeadings, headings_of
+from studio.core.headings import GroupHeadings, drifted, headings_of
 from studio.core.hold import hold_all
 from studio.core.live_frames import FrameLog
 from studio.core.live_solver import Solver, samples_of
@@ -158,7 +159,7 @@ def _held(take: Take, tracks: Mapping[SensorId, SensorTrack], poses: tuple[Mark,
     headings = headings_of(_worn(take, tracks), alignment, poses, duration)
     refused = refused_holds(tracks, setup.assignment, poses, alignment, duration)
     notes = [f"Moved in the hold {hold.pose}, so that it tells nothing: {_listed(hold.places)}." for hold in refused]
-    notes += _stood_otherwise(take, tracks, alignment, poses)
+    notes += [*_stood_otherwise(take, tracks, alignment, poses), *_drifted(take, tracks, alignment, poses, headings)]
     return Aligned(alignment, headings, (*notes, *_unknown(alignment, headings)))
 
 
@@ -175,6 +176,20 @@ def _stood_otherwise(
                 notes.append(
                     f"Not held like the pose {mark.label} at {mark.time:.1f} s, so that it tells nothing: {names}."
                 )
+    return notes
+
+
+def _drifted(
+    take: Take,
+    tracks: Mapping[SensorId, SensorTrack],
+    alignment: Alignment,
+    poses: tuple[Mark, ...],
+    headings: GroupHeadings,
+) -> list[str]:
+    notes = []
+    for mark, limbs in drifted(_worn(take, tracks), alignment, poses, take.duration(), headings):
+        named = _listed(f"{place.value} by {abs(math.degrees(angle)):.0f}°" for place, angle in limbs.items())
+        notes.append(f"In the pose {mark.label} held at {mark.time:.1f} s, headings had drifted: {named}.")
     return notes
 
 
@@ -195,6 +210,7 @@ def _carried(
             "tags sit and could not be used for that."
         )
     otherwise = _stood_otherwise(take, tracks, carried.alignment, poses)
+    otherwise += _drifted(take, tracks, carried.alignment, poses, headings)
     return Aligned(carried.alignment, headings, (note, *otherwise, *_unknown(carried.alignment, headings)))
 
 

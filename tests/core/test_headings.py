@@ -306,3 +306,21 @@ def test_a_pose_held_again_in_a_take_that_carries_its_calibration_does_not_spoil
     for place in LOWER:
         assert motion.measured[place][1:-1].all()
         assert error_of(motion, after, place, 8.0, 14.0) < 4.0, place
+
+
+@METHODS
+def test_a_heading_that_drifted_until_a_further_hold_is_named_with_its_degrees(method):
+    """By geometry: the shank's tag turns about the vertical by 20° between the holds; the others keep theirs."""
+    time = np.arange(round(SECONDS * RATE) + 1) / RATE
+    body = turned_body()
+    drift = rotation.about(2, np.radians(20.0) * np.clip((time - 9.0) / 2.0, 0, 1))
+    off = {p: rotation.multiply(drift, m) if p is Place.LEFT_SHANK else m for p, m in body.items()}
+    poses = (N_HOLD, BOW_HOLD, AGAIN)
+
+    notes = solve(worn_take(LOWER, SECONDS, motion=off, poses=poses)[0], SolveOptions(method=method)).motion.notes
+    steady = solve(worn_take(LOWER, SECONDS, motion=body, poses=poses)[0], SolveOptions(method=method)).motion
+
+    (note,) = (note for note in notes if "drifted" in note)
+    assert any(f"left shank by {degrees}°." in note for degrees in (19, 20, 21))
+    assert "," not in note.partition(":")[2]
+    assert not any("drifted" in note for note in steady.notes)
