@@ -120,10 +120,7 @@ def run_export(request: ExportRequest, progress: Progress) -> tuple[Path, tuple[
     progress("solve", 0.2)
     motion, orientations = None, {}
     if request.exporter in ("bvh", "joints"):
-        motion = load_motion(request.solve.take, loaded.key)
-        if motion is None:
-            motion = solve(loaded.take, loaded.options).motion
-            keep(request.solve.take, loaded.key, motion)
+        motion, _ = motion_of(request.solve.take, loaded)
         stood_in = stand_ins(motion) if request.exporter == "bvh" else ()
         motion = replace(motion, notes=(*motion.notes, *loaded.notes, *stood_in))
     if request.exporter == "orientations":
@@ -134,6 +131,15 @@ def run_export(request: ExportRequest, progress: Progress) -> tuple[Path, tuple[
     written, _ = export_file(request.exporter, material, request.wish, request.target)
     progress("write", 1.0)
     return written, motion.notes if motion is not None else loaded.notes
+
+
+def motion_of(folder: Path, loaded: Loaded) -> tuple[Motion, bool]:
+    """Return the motion of a take, computed unless that was done before, and whether it is kept in ``derived/``."""
+    kept = load_motion(folder, loaded.key)
+    if kept is not None:
+        return kept, True
+    motion = solve(loaded.take, loaded.options).motion
+    return motion, keep(folder, loaded.key, motion)
 
 
 def load(request: SolveRequest, progress: Progress) -> Loaded:

@@ -7,8 +7,6 @@ import asyncio
 import math
 import time
 from collections.abc import Collection, Iterable, Sequence
-from dataclasses import replace
-from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
 from queue import SimpleQueue
@@ -23,12 +21,14 @@ from studio.capture.link_watch import Note
 from studio.capture.live_buffer import LiveBuffer
 from studio.capture.pre_roll import PreRoll
 from studio.capture.procedures.judged_hold import Judged
+from studio.capture.recorded_setup import calibrations_of, recorded_setup
 from studio.capture.recording import Recording, TakeIdentity, anchor_now, open_take
+from studio.capture.runtime import first_of
 from studio.core.body import Place
 from studio.core.errors import AlreadyRecording, LinkError, NoData, PortGone, StudioError, UnsupportedVersion
 from studio.core.live_solver import Solver
 from studio.core.sample import Sample, SensorId, SensorInfo
-from studio.core.take import Calibration, CarriedAlignment, Mark, Setup
+from studio.core.take import Mark, Setup
 from studio.storage.take_file import Saved
 
 PRE_ROLL = 2.0  # s kept from before R
@@ -98,7 +98,7 @@ class LiveSession:
         self._ended_by.clear()
         self._first = None
         self._newest_sensor, self._newest, self._heard = math.inf, -math.inf, -math.inf
-        self._solver = Solver(self.setup, self._attitude, self._calibrations(self.setup), HISTORY)
+        self._solver = Solver(self.setup, self._attitude, calibrations_of(self.setup), HISTORY)
 
     def forget_body(self) -> None:
         """Forget the body calibration: somebody else wears the sensors."""
@@ -113,10 +113,7 @@ class LiveSession:
         LinkError, UnsupportedVersion
             Nothing usable came within ``patience`` seconds.
         """
-        waiting = {asyncio.create_task(e.wait()) for e in (self._settled, self._ended)}
-        _, pending = await asyncio.wait(waiting, timeout=patience, return_when=asyncio.FIRST_COMPLETED)
-        for task in pending:
-            task.cancel()
+        await first_of(self._settled, self._ended, timeout=patience)
         if not self.infos and (mistake := self.take_mistake()) is not None:
             raise mistake
         if not self.infos and (error := self.lost()) is not None:
@@ -197,7 +194,8 @@ class LiveSession:
             carried = self.setup.carried
         newest = self._newest
         anchor = anchor_now()
-        identity = TakeIdentity(library, person, name, source, self._recorded_setup(carried), anchor)
+        setup = recorded_setup(self.setup, carried, self._solver)
+        identity = TakeIdentity(library, person, name, source, setup, anchor)
         recording = Recording(await asyncio.to_thread(open_take, identity), seconds, anchor.monotonic)
         for intake in self._intakes.values():
             for link, dialect in intake.dialects.items():
@@ -212,15 +210,6 @@ class LiveSession:
                 recording.mark(mark)
         recording.mark(Mark(anchor.monotonic if first is None else max(newest, first), "record"))
         return recording
-
-    def _recorded_setup(self, carried: CarriedAlignment | None) -> Setup:
-        """Return the setup of a take; one that begins in motion is told what the filters know of the offsets."""
-        if carried is None:
-            return replace(self.setup, carried=None)
-        learned = self._solver.learned_offsets(datetime.now(UTC).isoformat(timespec="seconds"))
-        named = {calibration.sensor for calibration in learned}
-        others = [known for known in self.setup.calibrations if known.sensor not in named]
-        return replace(self.setup, carried=carried, calibrations=(*others, *learned))
 
     async def stop_recording(self) -> Saved:
         """Close the take and return once it has been read back.
@@ -249,12 +238,7 @@ class LiveSession:
 
     async def finished(self, recording: Recording) -> None:
         """Wait until a recording has its length, can keep nothing more, or its sources have ended."""
-        waiting = {asyncio.create_task(e.wait()) for e in (recording.full, self._ended)}
-        try:
-            await asyncio.wait(waiting, return_when=asyncio.FIRST_COMPLETED)
-        finally:
-            for task in waiting:
-                task.cancel()
+        await first_of(recording.full, self._ended)
 
     def mark(self, label: str) -> Mark:
         """Set a marker now."""
@@ -293,7 +277,7 @@ class LiveSession:
         return judged
 
     def _recalibrate(self, before: Setup, setup: Setup) -> None:
-        known, wanted = self._calibrations(before), self._calibrations(setup)
+        known, wanted = calibrations_of(before), calibrations_of(setup)
         for sensor in known.keys() | wanted.keys():
             calibration = wanted.get(sensor)
             if calibration == known.get(sensor):
@@ -302,10 +286,6 @@ class LiveSession:
                 self._solver.recalibrate(calibration)  # the body stays calibrated
             else:
                 self._solver.restart(sensor, calibration, self._pre_roll.samples(sensor))
-
-    @staticmethod
-    def _calibrations(setup: Setup) -> dict[SensorId, Calibration]:
-        return {calibration.sensor: calibration for calibration in setup.calibrations}
 
     def _follow(self, mark: Mark) -> None:
         self._set(mark)

@@ -3,11 +3,9 @@
 from pathlib import Path
 from typing import NamedTuple
 
-from studio.capture.jobs import Progress, SolveRequest, keep, load
+from studio.capture.jobs import Progress, SolveRequest, load, motion_of
 from studio.core.pose import Motion
-from studio.core.solver import solve
 from studio.core.take import Mark
-from studio.storage.motion_file import load_motion
 
 
 class Solved(NamedTuple):
@@ -30,10 +28,6 @@ def run_review(request: SolveRequest, progress: Progress) -> Solved:
     """
     loaded = load(request, progress)
     progress("solve", 0.2)
-    kept = load_motion(request.take, loaded.key)
-    if kept is not None:
-        return Solved(request.take, loaded.key, None, loaded.take.marks)
-    motion = solve(loaded.take, loaded.options).motion
-    is_kept = keep(request.take, loaded.key, motion)
+    motion, is_kept = motion_of(request.take, loaded)
     progress("solve", 1.0)
     return Solved(request.take, loaded.key, None if is_kept else motion, loaded.take.marks)

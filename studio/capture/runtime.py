@@ -46,3 +46,13 @@ class Runtime:
             task.cancel()
         await asyncio.gather(*others, return_exceptions=True)
         await asyncio.get_running_loop().shutdown_default_executor()
+
+
+async def first_of(*happenings: asyncio.Event, timeout: float | None = None) -> None:  # noqa: ASYNC109 (how it ends)
+    """Wait until one of these has happened, at most ``timeout`` s."""
+    waiting = {asyncio.create_task(happening.wait()) for happening in happenings}
+    try:
+        await asyncio.wait(waiting, timeout=timeout, return_when=asyncio.FIRST_COMPLETED)
+    finally:
+        for task in waiting:
+            task.cancel()

@@ -2,6 +2,7 @@
 
 import math
 import unicodedata
+from pathlib import Path
 from typing import Any
 
 LONGEST_FACT = 240  # characters, the names of all places; a longer text is cut in the middle, so that its end is seen
@@ -38,6 +39,14 @@ def duration(seconds: float) -> str:
     minutes, rest = divmod(tenths, 600)
     sign = "-" if seconds < 0 and tenths else ""
     return f"{sign}{minutes} min {rest / 10:04.1f} s" if minutes else f"{sign}{rest / 10:.1f} s"
+
+
+def folder_in_words(folder: Path) -> str:
+    """Return a folder as people write it: what is theirs begins with ``~``."""
+    try:
+        return str(Path("~") / folder.relative_to(Path.home()))
+    except (ValueError, RuntimeError):  # elsewhere, or nobody knows whose home this is
+        return str(folder)
 
 
 def readable(text: str) -> str:

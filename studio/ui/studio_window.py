@@ -1,13 +1,13 @@
 """The window and everything behind it, made once and joined: start reading the window here."""
 
 import json
-import shutil
 from pathlib import Path
 from typing import Protocol
 
 from PySide6.QtCore import QObject
 from PySide6.QtWidgets import QApplication, QWidget
 
+from studio.capture.next_take import seconds_that_fit
 from studio.core.body import Place
 from studio.export.file_target import is_taken
 from studio.storage.take_summary import TakeSummary
@@ -56,7 +56,7 @@ FIRST_SOURCE = "synthetic:walk?calibrated=1&ahead=9"
 """What the first start shows: somebody who has held the poses already, and walks."""
 STRIP_EVERY = 0.1  # s
 DISK_EVERY = 5.0  # s
-TAKE_BYTES = 60_000.0  # bytes a second of 15 tags at 50 Hz, raw and decoded (tests/storage measures it)
+FULL_SUIT = 750.0  # samples a second of 15 tags at 50 Hz: what is expected before any was heard
 
 
 class Keyed(Protocol):
@@ -242,19 +242,11 @@ class StudioWindow(QObject):
         self.window.tick(now)
         if now - self._disk_at >= DISK_EVERY:
             self._disk_at = now
-            self.model.work(self._seconds_of_disk, self._on_disk)
+            library, rates = self.model.library, [1 / info.frame_s for info in self.model.infos.values()]
+            self.model.work(lambda: seconds_that_fit(library, sum(rates) or FULL_SUIT), self._on_disk)
         if now - self._at >= STRIP_EVERY:
             self._at = now
             self.window.show_state(self.show.readiness(self.capture.take_title(), self._disk_left))
-
-    def _seconds_of_disk(self) -> float | None:
-        folder = self.model.library
-        while not folder.exists() and folder != folder.parent:
-            folder = folder.parent
-        try:
-            return shutil.disk_usage(folder).free / TAKE_BYTES
-        except OSError:
-            return None
 
     def _on_disk(self, left: float | None) -> None:
         self._disk_left = left

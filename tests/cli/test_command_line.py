@@ -76,15 +76,19 @@ def test_words_that_make_no_sense_end_with_2(words, capsys):
 
 
 def test_what_cannot_be_done_is_one_sentence_and_1(tmp_path, capsys, take):
-    refused(capsys, "inspect", tmp_path / "nothing here")
-    refused(capsys, "record", "--source", "pigeon", "--library", tmp_path)
-    refused(capsys, "record", "--source", f"serial:{tmp_path}/no-port", "--library", tmp_path)
-    refused(capsys, "record", "--source", "synthetic", "--library", tmp_path, "--person", "Jane Doe")
-    refused(capsys, "import", tmp_path / "nothing here", "--library", tmp_path)
-    refused(capsys, "export", take, "--format", "bvh", "-o", tmp_path / "no" / "such" / "folder.bvh")
-    refused(capsys, "solve", take, "--calibration", tmp_path / "none.json")
-    refused(capsys, "solve", take, "--pose", "n=50..60")
-    refused(capsys, "inspect", take, "--truth")
+    orders = [
+        ("inspect", tmp_path / "nothing here"),
+        ("record", "--source", "pigeon", "--library", tmp_path),
+        ("record", "--source", f"serial:{tmp_path}/no-port", "--library", tmp_path),
+        ("record", "--source", "synthetic", "--library", tmp_path, "--person", "Jane Doe"),
+        ("import", tmp_path / "nothing here", "--library", tmp_path),
+        ("export", take, "--format", "bvh", "-o", tmp_path / "no" / "such" / "folder.bvh"),
+        ("solve", take, "--calibration", tmp_path / "none.json"),
+        ("solve", take, "--pose", "n=50..60"),
+        ("inspect", take, "--truth"),
+    ]
+    said = [refused(capsys, *order) for order in orders]
+    assert len({*said}) == len(orders), "each says its own reason"
 
 
 def test_a_refusal_gives_the_reason_that_is_true(tmp_path, capsys, take):

@@ -112,7 +112,8 @@ def test_what_was_recorded_before_a_kill_is_there_and_can_be_exported(tmp_path):
 @pytest.mark.long
 @pytest.mark.timeout(600)
 def test_twenty_kills(tmp_path):
-    kill_some(tmp_path, np.random.default_rng(2027).uniform(0.2, POSED_BY, 20).tolist())
+    folders = kill_some(tmp_path, np.random.default_rng(2027).uniform(0.2, POSED_BY, 20).tolist())
+    assert len({*folders}) == 20, "each left a take that is listed"
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT, signal.SIGHUP], ids=lambda number: number.name)

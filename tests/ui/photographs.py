@@ -24,7 +24,8 @@ from studio.ui.studio_window import StudioWindow
 from tests.ui.running_studio import WALKS, running_studio
 
 PICTURES = Path(__file__).resolve().parents[2] / "resources" / "manual" / "pictures"
-PAGES = ("connect", "assign", "calibrate", "settings", "diagnostics")
+PAGES = ("connect", "assign", "calibrate", "settings")
+"""Diagnostics is left out: it tells of the computer it was photographed on."""
 PATIENCE = 60.0  # s
 SMALLEST = 0  # of a PNG: the most compression
 LONG = "Gait after total knee arthroplasty, second visit, without shoes, slow"
@@ -89,8 +90,10 @@ def photographed(
     folder: Path, ending: str, *, source: str = WALKS, **preferences: Any
 ) -> Iterator[tuple[StudioWindow, Camera]]:
     """Start a studio with folders that are gone afterwards."""
-    with tempfile.TemporaryDirectory() as place, running_studio(Path(place), source, **preferences) as studio:
-        yield studio, Camera(studio, folder, ending)
+    with tempfile.TemporaryDirectory() as place:
+        os.environ["HOME"] = place  # folders are shown as ``~/…``
+        with running_studio(Path(place), source, **preferences) as studio:
+            yield studio, Camera(studio, folder, ending)
 
 
 def everything(folder: Path, ending: str, **preferences: Any) -> None:

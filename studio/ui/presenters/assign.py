@@ -37,6 +37,7 @@ class AssignPresenter(QObject):
         self._on_setting("seen_from")
         model.setup_changed.connect(self._on_setup)
         model.source_changed.connect(self._on_setup)
+        self._on_setup()
 
     def act(self, action: str) -> bool:
         """Do what a key asks for."""

@@ -5,11 +5,15 @@ from pathlib import Path
 import platformdirs
 from PySide6.QtCore import QObject, Signal
 
+from studio.ui.fact_words import folder_in_words
 from studio.ui.presenters.folders import choose_folder, show_folder
 from studio.ui.settings import Settings
 from studio.ui.sound import Sound, Tone
 from studio.ui.views.main_window import MainWindow
 from studio.ui.views.settings_page import SettingsPage
+
+ELSEWHERE = frozenset({"take_name", "angles", "geometry", "last_source", "last_person", "last_preset"})
+"""Preferences that no part of the page shows: they change while somebody types."""
 
 
 def library_folder(settings: Settings) -> Path:
@@ -38,12 +42,13 @@ class PreferencesPresenter(QObject):
         values = self._settings.values
         self._sound.volume = values.volume if values.sound else 0.0
         self._window.keys.use(values.keys, clicker=values.clicker)
-        self._page.show_preferences(values, str(library_folder(self._settings)))
+        self._page.show_preferences(values, folder_in_words(library_folder(self._settings)))
         self._page.show_keys(self._window.keys.offered, values)
         self._window.show_vocabulary(values.vocabulary)
 
     def _on_changed(self, name: str) -> None:
-        self.show()
+        if name not in ELSEWHERE:
+            self.show()
         if name == "library":
             self.library_changed.emit()
 

@@ -3,7 +3,7 @@
 import math
 
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen
+from PySide6.QtGui import QColor, QFontMetrics, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from studio.ui.models.live_angles import Shown
@@ -57,8 +57,10 @@ class AngleNumber(QWidget):
         """Return room for three digits and a degree sign."""
         theme = self._theme
         number = round(theme.pixels("figure") * NUMBER)
-        height = theme.pixels("body") + number + BAND_HEIGHT + theme.pixels("caption") + 4 * GAP
-        return QSize(round(number * 2.6), height)
+        font = theme.font("figure")
+        font.setPixelSize(number)
+        lines = 1.4 * theme.pixels("body") + QFontMetrics(font).height() + 1.5 * theme.pixels("caption")
+        return QSize(round(number * 2.6), math.ceil(lines + BAND_HEIGHT + 2 * GRID))
 
     def minimumSizeHint(self) -> QSize:  # noqa: N802 (Qt's name)
         """Return the same: the number is never cut."""

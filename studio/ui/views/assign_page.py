@@ -13,7 +13,6 @@ from PySide6.QtWidgets import (
     QListWidget,
     QListWidgetItem,
     QPushButton,
-    QScrollArea,
     QSpinBox,
     QVBoxLayout,
     QWidget,
@@ -26,6 +25,7 @@ from studio.ui.models.place_words import PlaceWords
 from studio.ui.style_sheet import set_look
 from studio.ui.theme import GAP, GAP_PAGE, GAP_WIDE, GRID, Theme
 from studio.ui.views.body_map import BodyMap
+from studio.ui.views.side_panel import SidePanel
 
 PANEL = 380  # px at 100 % text
 SHARE = 0.52  # of the page that the panel may take when text is large
@@ -90,7 +90,7 @@ class AssignPage(QWidget):
     def restyle(self) -> None:
         """Take over colours and text size."""
         self.map.restyle()
-        self._fit_panel()
+        self._panel.fit(self.width())
         self._fit_list()
 
     def refresh(self) -> None:
@@ -113,11 +113,7 @@ class AssignPage(QWidget):
 
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 (Qt's name)
         """Share the width anew."""
-        self._fit_panel()
-
-    def _fit_panel(self) -> None:
-        wanted = round(PANEL * max(self._theme.text_scale, 1.0))
-        self._panel.setFixedWidth(min(wanted, round(self.width() * SHARE)))
+        self._panel.fit(self.width())
 
     def _fit_list(self) -> None:
         count = self.tags.count()
@@ -126,16 +122,8 @@ class AssignPage(QWidget):
         self.tags.setMaximumHeight(count * row + GAP)
 
     def _build(self) -> None:
-        self._panel = QScrollArea(self)
-        self._panel.setWidgetResizable(True)
-        self._panel.setFrameShape(QFrame.Shape.NoFrame)
-        self._panel.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self._panel.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        inside = QFrame(self._panel)
-        inside.setProperty("ground", "panel")
-        column = QVBoxLayout(inside)
-        column.setContentsMargins(GAP_PAGE, GAP_PAGE, GAP_PAGE, GAP_PAGE)
-        column.setSpacing(GAP)
+        self._panel = SidePanel(self._theme, PANEL, SHARE, GAP_PAGE, self)
+        column = self._panel.column
         self._build_tags(column)
         column.addSpacing(GAP)
         column.addWidget(self._build_card())
@@ -144,7 +132,6 @@ class AssignPage(QWidget):
         column.addSpacing(GAP)
         self._build_stature(column)
         column.addStretch(1)
-        self._panel.setWidget(inside)
         page = QHBoxLayout(self)
         page.setContentsMargins(0, 0, 0, 0)
         page.setSpacing(0)

@@ -7,11 +7,9 @@ from PySide6.QtGui import QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import (
     QButtonGroup,
     QComboBox,
-    QFrame,
     QHBoxLayout,
     QLabel,
     QPushButton,
-    QScrollArea,
     QVBoxLayout,
     QWidget,
 )
@@ -26,6 +24,7 @@ from studio.ui.theme import GAP, GAP_PAGE, GAP_WIDE, GRID, Theme
 from studio.ui.views.hold_display import HoldDisplay
 from studio.ui.views.hold_words import HoldWords
 from studio.ui.views.limb_table import LimbTable
+from studio.ui.views.side_panel import SidePanel
 
 PANEL = 460  # px at 100 % text
 MOST_LIMBS = 2  # named on a button; more are counted
@@ -81,7 +80,7 @@ class CalibrationPage(QWidget):
         """Take over colours and text size."""
         self.display.restyle()
         self.table.restyle()
-        self._fit_panel()
+        self._panel.fit(self.width())
         self.refresh()
 
     def refresh(self) -> None:
@@ -105,12 +104,8 @@ class CalibrationPage(QWidget):
 
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 (Qt's name)
         """Share the width anew."""
-        self._fit_panel()
+        self._panel.fit(self.width())
         self._shorten_steps()
-
-    def _fit_panel(self) -> None:
-        wanted = round(PANEL * max(self._theme.text_scale, 1.0))
-        self._panel.setFixedWidth(min(wanted, round(self.width() * SHARE)))
 
     def _build(self) -> None:
         self._steps = QHBoxLayout()
@@ -130,17 +125,9 @@ class CalibrationPage(QWidget):
         page.addLayout(left, 1)
         page.addWidget(self._build_panel())
 
-    def _build_panel(self) -> QScrollArea:
-        self._panel = QScrollArea(self)
-        self._panel.setWidgetResizable(True)
-        self._panel.setFrameShape(QFrame.Shape.NoFrame)
-        self._panel.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self._panel.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        inside = QFrame(self._panel)
-        inside.setProperty("ground", "panel")
-        column = QVBoxLayout(inside)
-        column.setContentsMargins(GAP_PAGE, GAP_PAGE, GAP_PAGE, GAP_PAGE)
-        column.setSpacing(GAP)
+    def _build_panel(self) -> SidePanel:
+        self._panel = SidePanel(self._theme, PANEL, SHARE, GAP_PAGE, self)
+        column = self._panel.column
         self.headline = QLabel(self)
         self.headline.setProperty("role", "section")
         self.headline.setWordWrap(True)
@@ -154,7 +141,6 @@ class CalibrationPage(QWidget):
         self._build_actions(column)
         column.addWidget(self.table, 100)
         column.addStretch(1)
-        self._panel.setWidget(inside)
         return self._panel
 
     def _build_choices(self, column: QVBoxLayout) -> None:

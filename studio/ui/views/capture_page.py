@@ -4,16 +4,15 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from PySide6.QtCore import Qt, Signal
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import (
     QComboBox,
     QDoubleSpinBox,
     QFormLayout,
-    QFrame,
     QHBoxLayout,
     QLabel,
     QLineEdit,
     QPushButton,
-    QScrollArea,
     QSizePolicy,
     QVBoxLayout,
     QWidget,
@@ -23,8 +22,10 @@ from studio.ui.models.live_angles import MOST_SHOWN, Shown
 from studio.ui.models.recorder import DELAYS, Phase
 from studio.ui.theme import CONTROL, GAP, GAP_WIDE, RECORD, Theme
 from studio.ui.views.angle_number import AngleNumber
+from studio.ui.views.side_panel import SidePanel
 
 SIDE_WIDTH = 280  # px at 100 % text
+SHARE = 0.5  # of the page that the panel may take when text is large
 LAST_TAKES = 5
 NO_ANGLE = ""
 
@@ -137,7 +138,7 @@ class CapturePage(QWidget):
         """Take over colours and text sizes."""
         theme = self._theme
         self.clock.setFont(theme.font("figure"))
-        self._side.setFixedWidth(round(SIDE_WIDTH * max(theme.text_scale, 1.0)))
+        self._side.fit(self.width())
         font = theme.font("figure", bold=True)
         font.setPixelSize(4 * theme.pixels("figure"))
         self._countdown.setFont(font)
@@ -148,6 +149,10 @@ class CapturePage(QWidget):
             restyle = getattr(part, "restyle", None)
             if restyle is not None:
                 restyle()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 (Qt's name)
+        """Share the width anew."""
+        self._side.fit(self.width())
 
     def _build(self, stage: QWidget, traces: QWidget) -> None:
         stage.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
@@ -169,18 +174,9 @@ class CapturePage(QWidget):
         page.addLayout(left, 1)
         page.addWidget(self._build_side())
 
-    def _build_side(self) -> QScrollArea:
-        self._side = QScrollArea(self)
-        self._side.setWidgetResizable(True)
-        self._side.setFrameShape(QFrame.Shape.NoFrame)
-        self._side.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self._side.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        inside = QFrame(self._side)
-        inside.setProperty("ground", "panel")
-        self._side.setWidget(inside)
-        column = QVBoxLayout(inside)
-        column.setContentsMargins(GAP_WIDE, GAP_WIDE, GAP_WIDE, GAP_WIDE)
-        column.setSpacing(GAP)
+    def _build_side(self) -> SidePanel:
+        self._side = SidePanel(self._theme, SIDE_WIDTH, SHARE, GAP_WIDE, self)
+        column = self._side.column
         self._build_recording(column)
         column.addSpacing(GAP_WIDE)
         self._build_choices(column)

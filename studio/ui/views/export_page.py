@@ -21,6 +21,7 @@ from PySide6.QtWidgets import (
 
 from studio.core.errors import StudioError
 from studio.export.bvh import RATES, rate_name
+from studio.ui.fact_words import folder_in_words
 from studio.ui.models.export_choice import FORMATS, ExportChoice
 from studio.ui.models.take_list_model import length
 from studio.ui.theme import FORM_WIDTH, GAP, GAP_PAGE, GAP_WIDE, GRID, RECORD, Theme
@@ -272,7 +273,7 @@ class ExportPage(QWidget):
         if len(items) > 1:
             words = self.tr("{first} and {n} more, named after their takes")
             self._names.setText(words.format(first=items[0].target.name, n=len(items) - 1))
-        self.folder.set_words(str(choice.folder))
+        self.folder.set_words(folder_in_words(choice.folder))
         replaced = choice.replaced()
         words = self.tr("▲ {name} is there already and will be replaced.")
         self._warning.setText(words.format(name=replaced[0].name) if replaced else "")

@@ -8,6 +8,7 @@ from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QFrame, QLabel, QProgressBar, QPushButton, QVBoxLayout, QWidget
 
 from studio.core.errors import StudioError
+from studio.ui.fact_words import folder_in_words
 from studio.ui.icons import SIZE, icon
 from studio.ui.style_sheet import set_look
 from studio.ui.theme import GAP, GAP_WIDE, Theme
@@ -118,7 +119,7 @@ class ExportResult(QFrame):
         self._bar.setVisible(bar)
         self._buttons.setVisible(bool(files))
         self._path.setVisible(bool(files))
-        self._path.set_words(str(files[0] if len(files) == 1 else files[0].parent) if files else "")
+        self._path.set_words(folder_in_words(files[0] if len(files) == 1 else files[0].parent) if files else "")
         self.copy.setText(self.tr("Copy path") if len(files) <= 1 else self.tr("Copy paths"))
         self.copy.setAccessibleName(self.copy.text())
         self.show()
