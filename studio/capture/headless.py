@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from studio.capture.live_session import LiveSession
-from studio.capture.setups import setup_for, with_stature
+from studio.capture.setups import remember, setup_for, with_stature
 from studio.capture.sources import open_source
-from studio.core.errors import FellSilent, NoData, RecordingError, StoppedEarly, StudioError, WrittenByNewerStudio
+from studio.core.errors import FellSilent, NoData, StoppedEarly, StudioError
 from studio.core.take import Setup
-from studio.storage.person_file import Person, load_person, save_person
+from studio.storage.person_file import Person, load_person
 from studio.storage.take_file import Saved
 
 
@@ -74,7 +74,7 @@ async def record(request: RecordRequest, session: LiveSession, stop: asyncio.Eve
     if saved.samples == 0 and mistake is None:
         raise stopped_by or NoData(request.source, 0)
     if opened.setup is None:
-        _remember(request, session, person)
+        remember(request.library, request.person, session.setup)
     return Recorded(saved, stopped_by, mistake, sensors, loss)
 
 
@@ -102,12 +102,3 @@ def _setup(request: RecordRequest, session: LiveSession, offered: Setup | None, 
     """Return the setup of the recording; a stature that was asked for is stronger than what the source says."""
     setup = setup_for(session.infos, offered, person)
     return setup if request.stature is None else replace(setup, stature=request.stature, stature_known=True)
-
-
-def _remember(request: RecordRequest, session: LiveSession, person: Person) -> None:
-    """Keep the assignment for the next time; the take itself is safe already."""
-    worn = Person(stature=person.stature, assignment=session.setup.assignment, mounting=session.setup.mounting)
-    try:
-        save_person(request.library, request.person, worn)
-    except (RecordingError, WrittenByNewerStudio):
-        return

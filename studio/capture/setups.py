@@ -1,5 +1,6 @@
-"""Who wears which sensor: from the source, from the last time, or from the numbers on the tags."""
+"""The facts in force: who wears which sensor and how tall they are, and what is remembered of it for the next time."""
 
+import contextlib
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import replace
@@ -8,8 +9,10 @@ from pathlib import Path
 import msgspec
 
 from studio.core.body import DEFAULT_STATURE, PLACES
-from studio.core.sample import SensorId, SensorInfo
-from studio.core.take import Assignment, Setup
+from studio.core.errors import RecordingError, WrittenByNewerStudio
+from studio.core.rest import Rest
+from studio.core.sample import NO_CORRECTION, Correction, SensorId, SensorInfo
+from studio.core.take import Assignment, Calibration, Setup
 from studio.storage.person_file import Person, load_person, save_person
 
 
@@ -62,3 +65,18 @@ def with_stature(library: Path, code: str, stature: float | None) -> float | Non
         return person.stature
     save_person(library, code, msgspec.structs.replace(person, stature=stature))
     return stature
+
+
+def remember(library: Path, person: str, setup: Setup) -> None:
+    """Keep stature and assignment of a person for the next time; a library that cannot be written is told elsewhere."""
+    stature = setup.stature if setup.stature_known else None
+    with contextlib.suppress(RecordingError, WrittenByNewerStudio):
+        save_person(library, person, Person(stature=stature, assignment=setup.assignment, mounting=setup.mounting))
+
+
+def rest_calibration(info: SensorInfo, rest: Rest, date: str) -> Calibration:
+    """Return a gyroscope's correction by the offset it showed while it lay still; its gain stays."""
+    x, y, z = (float(value) for value in rest.offset)
+    sx, sy, sz = (float(value) for value in rest.sigma)
+    gain = (info.correction or NO_CORRECTION).gain
+    return Calibration(info.sensor, Correction((x, y, z), gain), date, "rest", offset_sigma=(sx, sy, sz))

@@ -12,7 +12,7 @@ from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from typing import Any, TypeVar, cast
 
-from studio.core.errors import StudioError
+from studio.core.errors import StudioError, WorkerLost
 
 PATIENCE = 0.5  # s; a process that does not end by then is not asked again
 
@@ -22,10 +22,6 @@ R = TypeVar("R")
 Progress = Callable[[str, float], None]
 Job = Callable[[R, Progress], T]
 """A function at the top of a module: it is found by name on the other side."""
-
-
-class WorkerLost(Exception):
-    """The worker process ended before a job did: it was closed, killed, or the system ran out of memory."""
 
 
 class JobFailed(Exception):

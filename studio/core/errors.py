@@ -3,6 +3,7 @@
 The tree::
 
     StudioError
+    ├── WorkerLost
     ├── LinkError         PortGone · PortBusy · PortForbidden · SourceUnreadable · NoData · FellSilent
     ├── ProtocolError     UnsupportedVersion
     ├── CalibrationError  CalibrationUnreadable
@@ -33,6 +34,11 @@ class StudioError(Exception):
 
 class LinkError(StudioError):
     """A source of samples could not be opened or kept open."""
+
+
+@dataclass(eq=False)
+class WorkerLost(StudioError):
+    """The process that computes ended before its job did: it was closed, killed, or there was no memory left."""
 
 
 @dataclass(eq=False)

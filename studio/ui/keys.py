@@ -99,11 +99,16 @@ _OWN_KEYS: tuple[tuple[type | tuple[type, ...], set[str]], ...] = (
 )
 """Keys by which a control is worked: while it has the focus, they belong to it."""
 
+_PLAYING = {"Space", "Left", "Right", "Shift+Left", "Shift+Right"}
+"""Keys that a list with the property ``gives_way`` leaves to the page."""
+
 
 def keeps(widget: QWidget | None, key: str) -> bool:
     """Return whether the focused ``widget`` needs this key for itself."""
     if isinstance(widget, _TEXT_FIELDS) or (isinstance(widget, QComboBox) and widget.isEditable()):
         return True
+    if widget is not None and widget.property("gives_way") and key in _PLAYING:
+        return False
     return any(isinstance(widget, kind) and key in own for kind, own in _OWN_KEYS)
 
 

@@ -17,6 +17,8 @@ class Operation(QObject):
     """The result."""
     refused = Signal(object)
     """A StudioError."""
+    failed = Signal()
+    """It ended by a mistake of ours, which is raised right after."""
     progressed = Signal(str, float)
     """What is being done, and how far it is, 0…1."""
 
@@ -39,6 +41,12 @@ class Operation(QObject):
         if self._future is not None:
             wait((self._future,), timeout)
 
+    def cancel(self) -> None:
+        """Call it off: nothing is told of it any more."""
+        if self._future is not None:
+            self._future.cancel()
+            self._future = None
+
     def poll(self) -> None:
         """Tell what has happened since the last time; our own mistakes are raised here."""
         while True:
@@ -50,12 +58,14 @@ class Operation(QObject):
         if future is None or not future.done():
             return
         self._future = None
-        try:
-            result = future.result()
-        except StudioError as refusal:
-            self.refused.emit(refusal)
+        error = future.exception()
+        if error is None:
+            self.done.emit(future.result())
+        elif isinstance(error, StudioError):
+            self.refused.emit(error)
         else:
-            self.done.emit(result)
+            self.failed.emit()
+            raise error
 
     def _tell(self, what: str, share: float) -> None:
         self._progress.put((what, share))

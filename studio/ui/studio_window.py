@@ -19,7 +19,7 @@ from studio.ui.models.hold_model import HoldModel
 from studio.ui.models.live_angles import LiveAngles
 from studio.ui.models.place_words import PlaceWords, place_words
 from studio.ui.models.playhead import Playhead
-from studio.ui.models.recorder import Recorder
+from studio.ui.models.recorder import Phase, Recorder
 from studio.ui.models.studio_model import StudioModel
 from studio.ui.presenters.assign import AssignPresenter
 from studio.ui.presenters.calibrate import CalibratePresenter
@@ -163,6 +163,7 @@ class StudioWindow(QObject):
         }  # fmt: skip
         self.window = MainWindow(theme, self.pages)
         self.window.toast.keep_clear_of(self.capture_page.record)
+        self.window.toast.keep_clear_of(self.review_page.transport)
         first, looked_at = Stage(theme), Stage(theme)
         self.home_page.set_stage(first)
         self.review_page.set_stage(looked_at)
@@ -202,6 +203,7 @@ class StudioWindow(QObject):
         window.vocabulary_changed.connect(self._on_vocabulary)
         window.close_requested.connect(self._on_close)
         window.close_confirmed.connect(self._on_close_confirmed)
+        window.export_end_confirmed.connect(self._on_export_ended)
         recorder.phase_changed.connect(self._on_phase)
         recorder.close_asked.connect(window.ask_before_close)
         recorder.close_ready.connect(window.close_now)
@@ -267,13 +269,16 @@ class StudioWindow(QObject):
             self._export_again()
 
     def _export_again(self) -> None:
-        current = self.review_page.takes.current()
-        if self.window.shown_page == "review" and current is not None:
+        takes = self.review_page.takes
+        current = takes.current()
+        chosen = [takes.model.summary(folder) for folder in takes.selected()] or [current]
+        known = [take for take in chosen if take is not None]
+        if self.window.shown_page == "review" and known:
             self.go_to("export")
-            self.export.again((current,))
+            self.export.again(known)
 
     def _on_acted(self, action: str) -> None:
-        if action == "open_last" and self._offered:
+        if action == "open_last" and self._offered and not self.recorder.is_busy:
             self.model.open(self._offered)
 
     def _on_vocabulary(self, name: str) -> None:
@@ -289,7 +294,7 @@ class StudioWindow(QObject):
 
     def _on_phase(self, _: object) -> None:
         """While a take is being recorded, what would change whose it is or what is in it waits."""
-        may = not self.recorder.is_busy
+        may = self.recorder.phase in (Phase.IDLE, Phase.SAVED)
         reason = "" if may else self.tr("A take is being recorded: this can be changed after it.")
         parts: tuple[QWidget, ...] = (
             self.window.header.person, self.connect_page.choice, self.assign_page,
@@ -301,6 +306,12 @@ class StudioWindow(QObject):
         self.assign.is_allowed = may
 
     def _on_close(self) -> None:
+        if self.export.is_running:
+            self.window.ask_before_ending_export()
+        elif self.recorder.close(self.model.now()):
+            self.window.close_now()
+
+    def _on_export_ended(self) -> None:
         if self.recorder.close(self.model.now()):
             self.window.close_now()
 
@@ -355,10 +366,12 @@ class StudioWindow(QObject):
         self.go_to("connect")
 
     def _on_own_sensors(self) -> None:
-        if self.model.source.startswith("synthetic"):
+        self.go_to("connect")
+        if self.recorder.phase not in (Phase.IDLE, Phase.SAVED):
+            return  # the page says why nothing can be changed now
+        if self.model.is_simulated:
             self.model.close_source()
         self.connect_page.choice.set_kind("serial")
-        self.go_to("connect")
 
     def _on_export(self, takes: tuple[TakeSummary, ...]) -> None:
         self.export.choose(takes)

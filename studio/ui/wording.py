@@ -236,6 +236,12 @@ TEMPLATES = _by_id(
         "Check the path.",
     ),
     Message(
+        "open.worker_lost",
+        "This could not be worked out.",
+        "The part of the studio that computes was ended by the system; mostly because the memory is full.",
+        "Close other programs and try again. The take is as it was.",
+    ),
+    Message(
         "open.damaged",
         "Nothing of the take can be used.",
         "The file {path} is damaged; what could be recovered ends after {recovered_until_s}.",
@@ -349,6 +355,7 @@ MESSAGE_OF: dict[type[StudioError], str | Callable[[Any], str]] = {
     errors.FolderIsFile: "rec.is_file",
     errors.VerificationFailed: "rec.verify_fail",
     errors.NotATake: "open.not_take",
+    errors.WorkerLost: "open.worker_lost",
     errors.Damaged: "open.damaged",
     errors.WrittenByNewerStudio: "open.newer",
     errors.TakeUnsafe: "open.refused",

@@ -163,6 +163,19 @@ def test_repeating_the_reference_asks_for_the_bow_again():
     assert hold.next_pose == "n"
 
 
+def test_a_repeated_reference_needs_no_bow_where_the_bow_from_before_still_tells():
+    hold = HeldPose()
+    now = held(hold, Judged(alignment(), None))
+    now = held(hold, Judged(alignment(), None), now)
+    hold.start(now, 3, "n")
+    run(hold, now, 7.0)
+
+    hold.answer(Judged(alignment(source="bow"), None))
+
+    assert hold.done == ("n", "bow")
+    assert hold.next_pose is None
+
+
 def test_a_hold_that_nobody_judges_ends_by_itself():
     hold = HeldPose()
     hold.start(0.0, 3)

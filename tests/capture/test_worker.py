@@ -6,8 +6,8 @@ import traceback
 
 import pytest
 
-from studio.capture.worker import JobFailed, Worker, WorkerLost
-from studio.core.errors import NothingToExport
+from studio.capture.worker import JobFailed, Worker
+from studio.core.errors import NothingToExport, WorkerLost
 from tests.capture import worker_jobs
 
 PATIENCE = 30  # s; starting Python takes a second on a busy machine

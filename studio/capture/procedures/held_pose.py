@@ -95,6 +95,8 @@ class HeldPose:
         """The last answer that can be used."""
         self.outcome: Outcome | None = None
         self.done: tuple[PoseName, ...] = ()
+        self._before: tuple[PoseName, ...] = ()
+        """What was done when the reference was begun anew."""
         """The poses of the sequence that were held well enough."""
         self._delay = 0
         self._since = 0.0
@@ -122,7 +124,7 @@ class HeldPose:
         """Begin anew: other sensors, another person."""
         self.phase = Phase.IDLE
         self.pose = self.sequence[0]
-        self.only, self.done = frozenset(), ()
+        self.only, self.done, self._before = frozenset(), (), ()
         self.alignment = self.outcome = None
 
     def start(self, now: float, delay: int, pose: PoseName | None = None, only: Collection[Place] = ()) -> Told:
@@ -139,7 +141,8 @@ class HeldPose:
             return ()
         wanted = pose or self.next_pose or self.sequence[0]
         if not only and wanted in self.done:
-            # A new reference makes what followed it meaningless.
+            # A new reference makes what followed it meaningless, unless the session finds otherwise (``answer``).
+            self._before = self.done
             kept = self.sequence.index(wanted) if wanted in self.sequence else 0
             self.done = self.done[:kept]
         self.pose, self.only = wanted, frozenset(only) if self.alignment is not None else frozenset()
@@ -189,6 +192,8 @@ class HeldPose:
             self.done = ()  # the reference lies too far back, or was none: it must be held again
         if self._is_enough(alignment, error):
             self.done = (*(pose for pose in self.done if pose != self.pose), self.pose)
+            if "bow" in self._before and alignment is not None and _all_bowed(alignment):
+                self.done = tuple(pose for pose in self.sequence if pose in (*self.done, *self._before))
             return self._end(Kind.DONE)
         return self._end(Kind.FAILED)
 
@@ -220,3 +225,8 @@ class HeldPose:
     def _end(self, kind: Kind) -> Told:
         self.phase, self.only = Phase.JUDGED, frozenset()
         return (Cue(kind),)
+
+
+def _all_bowed(alignment: Alignment) -> bool:
+    """Return whether a bow, however long ago, still tells how every tag sits."""
+    return all(limb.source == "bow" for limb in alignment.limbs.values())

@@ -188,7 +188,7 @@ class ExportChoice(QObject):
 
     def _typed(self) -> Path:
         ending = ".bvh" if self.format.family == "bvh" else ".csv"
-        stem = self._name.removesuffix(ending)
+        stem = self._name.removesuffix(".bvh").removesuffix(".csv")
         safe = "".join("-" if c in '\\/:*?"<>|' or not c.isprintable() else c for c in stem).strip(". ")
         return self.folder / f"{safe or 'export'}{ending}"
 

@@ -102,8 +102,8 @@ class Recorder(QObject):
     def failed(self) -> None:
         """Starting or saving was refused; the reason is told elsewhere."""
         if self.phase in (Phase.STARTING, Phase.RECORDING, Phase.SAVING):
+            self._closing = False  # who was to close the window must read first what became of the take
             self._go(Phase.IDLE)
-            self._perhaps_close()
 
     def close(self, now: float) -> bool:
         """The window is to be closed: return whether it may, else ask once."""

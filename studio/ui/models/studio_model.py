@@ -5,12 +5,14 @@ events, and ``runtime.call``.
 """
 
 import asyncio
+import contextlib
 import math
 import time
 from collections.abc import Callable, Collection, Coroutine, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 from queue import Empty
 from typing import Any, TypeVar
@@ -25,16 +27,15 @@ from studio.capture.live_session import LiveSession
 from studio.capture.next_take import NextTake, next_take
 from studio.capture.procedures.judged_hold import Judged
 from studio.capture.runtime import Runtime
-from studio.capture.setups import setup_for
+from studio.capture.setups import remember, rest_calibration, setup_for
 from studio.capture.sources import open_source
 from studio.capture.worker import Worker
 from studio.core.body import Place
-from studio.core.errors import RecordingError, StudioError, WrittenByNewerStudio
+from studio.core.errors import StudioError
 from studio.core.rest import Rest
-from studio.core.sample import NO_CORRECTION, Correction, SensorId, SensorInfo
-from studio.core.take import Alignment, Assignment, Calibration, Mark, Setup
-from studio.storage.person_file import Person, load_person, save_person
-from studio.storage.take_file import Saved
+from studio.core.sample import SensorId, SensorInfo
+from studio.core.take import Alignment, Assignment, Mark, Setup
+from studio.storage.person_file import Person, load_person
 from studio.ui.operation import Operation
 
 T = TypeVar("T")
@@ -102,6 +103,11 @@ class StudioModel(QObject):
         """s, clock of ``now``: when a sample of any sensor last came in."""
         self._received = 0
         self._why_closed: StudioError | None = None
+        self._wish = 0
+        """Counts what was asked of sources: answers to older wishes count for nothing."""
+        self._attempt: Operation | None = None
+        self._unread: StudioError | None = None
+        """Why nothing is known of the person although the sensors could be opened."""
 
     @property
     def buffer(self) -> LiveBuffer:
@@ -139,13 +145,19 @@ class StudioModel(QObject):
 
     def open(self, source: str) -> None:
         """Connect to a source instead of the one that is open."""
+        if self.is_recording:
+            return
+        self._give_up()
         self.connecting, self.source = True, source
         self.source_changed.emit()
-        self._ask(self._connect(source), self._connected, self._not_connected)
+        self._attempt = self._ask(self._connect(source), self._connected, self._lost)
 
     def close_source(self) -> None:
         """Disconnect."""
-        self._ask(self._disconnect(), self._disconnected)
+        if self.is_recording:
+            return
+        self._give_up()
+        self._ask(self._disconnect(), partial(self._disconnected, self._wish))
 
     def assign(self, assignment: Assignment) -> None:
         """Put sensors on other places: the body must be aligned again."""
@@ -159,13 +171,13 @@ class StudioModel(QObject):
         """Put another setup in force."""
         if setup.assignment != self.setup.assignment:
             self.alignment = None
-        self._ask(self._adopt(setup), self._adopted)
+        self._ask(self._adopt(setup, self.person), self._adopted)
 
     def keep_rests(self, rests: Mapping[SensorId, Rest]) -> None:
         """Correct gyroscopes by the offset they showed while they lay still; their gains stay."""
         now = datetime.now(UTC).isoformat(timespec="seconds")
         infos = self.infos
-        fresh = [_calibration(infos[sensor], rest, now) for sensor, rest in rests.items() if sensor in infos]
+        fresh = [rest_calibration(infos[sensor], rest, now) for sensor, rest in rests.items() if sensor in infos]
         others = [known for known in self.setup.calibrations if known.sensor not in rests]
         self.adopt(replace(self.setup, calibrations=(*others, *fresh)))
 
@@ -180,7 +192,7 @@ class StudioModel(QObject):
         self.person = code
         if not self._knows_body:
             self.alignment = None
-        self._ask(self._meet(code), self._met)
+        self._ask(self._meet(code), self._met, self._not_met)
 
     def look_for_next_take(self) -> None:
         """Find out which number the next take will have."""
@@ -196,7 +208,7 @@ class StudioModel(QObject):
 
     def stop_recording(self) -> None:
         """Close the take; ``recording_saved`` comes when it was read back."""
-        self._ask(self._session.stop_recording(), self._saved, self.recording_failed.emit)
+        self._ask(self._session.stop_recording(), self.recording_saved.emit, self.recording_failed.emit)
 
     def mark(self, label: str) -> None:
         """Set a marker now."""
@@ -233,10 +245,12 @@ class StudioModel(QObject):
     def shut_down(self) -> None:
         """Stop everything in order: what was asked for is done, a recording is closed and read back first."""
         self._is_closed = True
+        end = self.now() + LAST_WORDS
         for operation in self._operations:
-            operation.wait(LAST_WORDS)
+            operation.wait(max(end - self.now(), 0.0))
         if self._session.recording is not None:
-            self._runtime.call(self._session.stop_recording()).result()
+            with contextlib.suppress(StudioError):  # what was kept is on the disk, and found at the next start
+                self._runtime.call(self._session.stop_recording()).result()
         self._runtime.call(self._session.disconnect()).result()
         self._runtime.stop()
         self._disk.shutdown()
@@ -247,14 +261,22 @@ class StudioModel(QObject):
         coroutine: Coroutine[Any, Any, T],
         done: Callable[[T], None],
         refused: Callable[[StudioError], None] | None = None,
-    ) -> None:
+    ) -> Operation:
+        operation = Operation(self)
         if self._is_closed:
             coroutine.close()
-            return
-        operation = Operation(self)
+            return operation
         operation.done.connect(done)
         operation.refused.connect(refused or self.refused.emit)
         self.run(operation, lambda tell: self._runtime.call(coroutine))
+        return operation
+
+    def _give_up(self) -> None:
+        """Another source is wanted, or none: what becomes of the one being opened is of no interest any more."""
+        self._wish += 1
+        if self._attempt is not None and self.connecting:
+            self._attempt.cancel()
+        self._attempt = None
 
     async def _on_disk(self, task: Callable[[], T]) -> T:
         return await asyncio.get_running_loop().run_in_executor(self._disk, task)
@@ -267,35 +289,28 @@ class StudioModel(QObject):
         self._knows_body = opened.setup is not None
         await self._session.connect(source, opened.link)
         await self._session.sensors_known()
-        person = await asyncio.to_thread(load_person, self.library, self.person)
+        try:
+            person = await asyncio.to_thread(load_person, self.library, self.person)
+        except StudioError as refusal:  # the sensors can be used without what is known of the person
+            person, self._unread = Person(), refusal
         self._session.adopt(setup_for(self._session.infos, opened.setup, person))
 
     async def _disconnect(self) -> None:
         await self._session.disconnect()
         self._session.forget()
 
-    async def _adopt(self, setup: Setup) -> None:
+    async def _adopt(self, setup: Setup, person: str) -> None:
         self._session.adopt(setup)
         if not self._knows_body:
-            await asyncio.to_thread(self._remember, setup)
+            await asyncio.to_thread(remember, self.library, person, setup)
 
     async def _meet(self, code: str) -> None:
-        person = await asyncio.to_thread(load_person, self.library, code)
         if not self._knows_body:
             self._session.forget_body()
+        person = await asyncio.to_thread(load_person, self.library, code)
         if self._session.infos and not self._knows_body:
             known = setup_for(self._session.infos, None, person)
             self._session.adopt(replace(known, calibrations=self._session.setup.calibrations))
-
-    def _remember(self, setup: Setup) -> None:
-        """Keep stature and assignment for the next time; a library that cannot be written is told when recording."""
-        stature = setup.stature if setup.stature_known else None
-        try:
-            save_person(
-                self.library, self.person, Person(stature=stature, assignment=setup.assignment, mounting=setup.mounting)
-            )
-        except (RecordingError, WrittenByNewerStudio):
-            return
 
     async def _hold(self, pose: Mark, only: Collection[Place]) -> Judged:
         return await self._session.held(pose, only)
@@ -312,20 +327,22 @@ class StudioModel(QObject):
         return {s: health.snapshot(now) for s, health in self._session.health().items()}, fill, left, full
 
     def _connected(self, _: object) -> None:
-        self.connecting = False
+        self.connecting, self._attempt = False, None
+        if self._unread is not None:
+            refusal, self._unread = self._unread, None
+            self.refused.emit(refusal)
         self.look_for_next_take()
         self.source_changed.emit()
         self.setup_changed.emit()
 
-    def _not_connected(self, error: StudioError) -> None:
-        self._lost(error)
-
     def _lost(self, error: StudioError) -> None:
         """Close the source, and then tell why."""
         self._why_closed = error
-        self._ask(self._disconnect(), self._disconnected)
+        self._ask(self._disconnect(), partial(self._disconnected, self._wish))
 
-    def _disconnected(self, _: object) -> None:
+    def _disconnected(self, wish: int, _: object) -> None:
+        if wish != self._wish:  # another source was asked for meanwhile
+            return
         self.source, self.connecting, self.alignment = "", False, None
         self.health = {}
         self.source_changed.emit()
@@ -340,12 +357,13 @@ class StudioModel(QObject):
         self.person_changed.emit()
         self.setup_changed.emit()
 
+    def _not_met(self, error: StudioError) -> None:
+        self._met(None)
+        self.refused.emit(error)
+
     def _found_next_take(self, found: NextTake) -> None:
         self.next_take = found
         self.next_take_changed.emit()
-
-    def _saved(self, saved: Saved) -> None:
-        self.recording_saved.emit(saved)
 
     def _looked(self, told: tuple[dict[SensorId, HealthSnapshot], float, float | None, bool]) -> None:
         self.health, self.queue_fill, self.seconds_left, full = told
@@ -375,13 +393,6 @@ class StudioModel(QObject):
         elif isinstance(event, events.MistakeMade):
             self.recording_full.emit()
             raise event.mistake
-
-
-def _calibration(info: SensorInfo, rest: Rest, date: str) -> Calibration:
-    x, y, z = (float(value) for value in rest.offset)
-    sx, sy, sz = (float(value) for value in rest.sigma)
-    gain = (info.correction or NO_CORRECTION).gain
-    return Calibration(info.sensor, Correction((x, y, z), gain), date, "rest", offset_sigma=(sx, sy, sz))
 
 
 def _nothing(_: object) -> None:

@@ -87,24 +87,20 @@ class CapturePresenter(QObject):
         """R: start, stop, or call off the countdown."""
         idle = self._recorder.phase in (Phase.IDLE, Phase.SAVED)
         if idle and not self._is_anything_heard():
-            self._notices.warn(
-                "rec.nothing",
-                self.tr("There is nothing to record."),
-                self.tr("No sensor is sending."),
-                self.tr("Connect a source first, or use the simulator."),
-                ((Action("connect", self.tr("Connect")), self.connect_wanted.emit),),
-            )
+            self._say_nothing_is_heard()
             return
         self._notices.withdraw("rec.nothing")
         self._recorder.press(self._model.now(), self._settings.values.delay)
 
     def act(self, action: str) -> bool:
-        """Do what a key asks for."""
+        """Do what a key asks for; return whether there was anything to do."""
         if action == "marker" and self._recorder.phase is Phase.RECORDING:
             self._on_marker()
-        elif action == "cancel":
+            return True
+        if action == "cancel" and self._recorder.phase is Phase.COUNTDOWN:
             self._recorder.cancel()
-        return action in self.keys
+            return True
+        return False
 
     def take_name(self) -> str:
         """Return the name the next take will have."""
@@ -148,6 +144,15 @@ class CapturePresenter(QObject):
             windows = {name: self._angles.window(name, TRACE_SECONDS) for name in names}
             self._traces.show_angles([AngleCurve(in_words(n), side_of(n), *windows[n]) for n in names], now)
 
+    def _say_nothing_is_heard(self) -> None:
+        self._notices.warn(
+            "rec.nothing",
+            self.tr("There is nothing to record."),
+            self.tr("No sensor is sending."),
+            self.tr("Connect a source first, or use the simulator."),
+            ((Action("connect", self.tr("Connect")), self.connect_wanted.emit),),
+        )
+
     def _is_anything_heard(self) -> bool:
         return self._model.now() - self._model.heard_at <= HEARD
 
@@ -160,6 +165,10 @@ class CapturePresenter(QObject):
         self._show_phase()
 
     def _on_start(self) -> None:
+        if not self._is_anything_heard():  # the source went away while it was counted down
+            self._recorder.failed()
+            self._say_nothing_is_heard()
+            return
         self._model.start_recording(self.take_name())
 
     def _on_started(self, folder: Path) -> None:

@@ -8,7 +8,7 @@ import platformdirs
 from PySide6.QtCore import QObject, Signal
 
 from studio.capture.jobs import ExportRequest, SolveRequest, run_export
-from studio.core.errors import StudioError
+from studio.core.errors import StudioError, WorkerLost
 from studio.storage.take_summary import TakeSummary
 from studio.ui.models.export_choice import ExportChoice, ExportValues, Item
 from studio.ui.models.studio_model import StudioModel
@@ -95,6 +95,7 @@ class ExportPresenter(QObject):
         operation.progressed.connect(self._show_progress)
         operation.done.connect(self._on_written)
         operation.refused.connect(self._on_refused)
+        operation.failed.connect(self._on_failed)
         worker = self._model.worker
         self._model.run(operation, lambda tell: worker.submit(run_export, request, tell))
 
@@ -108,6 +109,9 @@ class ExportPresenter(QObject):
         self._written.append(file)
         self._notes.update(dict.fromkeys(notes))
         self._next()
+
+    def _on_failed(self) -> None:
+        self._on_refused(WorkerLost())
 
     def _on_refused(self, error: StudioError) -> None:
         self._order = None

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 from PySide6.QtCore import QObject, Signal
@@ -9,7 +10,7 @@ from PySide6.QtCore import QObject, Signal
 from studio.capture.jobs import SolveRequest
 from studio.capture.review_job import Solved, run_review
 from studio.core.body import Place
-from studio.core.errors import Damaged, StudioError
+from studio.core.errors import Damaged, StudioError, WorkerLost
 from studio.storage.motion_file import load_motion
 from studio.storage.take_json import Verdict
 from studio.storage.take_summary import TakeSummary, keep_summary, summaries, summarise
@@ -88,9 +89,10 @@ class ReviewPresenter(QObject):
             return
         self._page.show_loading(folder, "read", 0.0)
         operation = Operation(self)
-        operation.progressed.connect(self._on_progress)
+        operation.progressed.connect(partial(self._on_progress, folder))
         operation.done.connect(self._on_solved)
-        operation.refused.connect(self._on_refused)
+        operation.refused.connect(partial(self._on_refused, folder))
+        operation.failed.connect(partial(self._on_refused, folder, WorkerLost()))
         worker = self._model.worker
         self._model.run(operation, lambda tell: worker.submit(run_review, SolveRequest(folder), tell))
 
@@ -98,12 +100,13 @@ class ReviewPresenter(QObject):
         """Keep what the operator thinks of a take."""
         self._keep(folder, lambda known: replace(known, verdict=verdict))
 
-    def _on_progress(self, stage: str, share: float) -> None:
-        self._page.show_loading(self._wanted, stage, share)
+    def _on_progress(self, folder: Path, stage: str, share: float) -> None:
+        if folder == self._wanted:
+            self._page.show_loading(folder, stage, share)
 
     def _on_solved(self, solved: Solved) -> None:
         if solved.folder == self._wanted:
-            self._model.work(lambda: _reviewed(solved), self._on_review, self._on_refused)
+            self._model.work(lambda: _reviewed(solved), self._on_review, partial(self._on_refused, solved.folder))
 
     def _on_review(self, review: TakeReview) -> None:
         if review.summary.folder != self._wanted:
@@ -111,8 +114,10 @@ class ReviewPresenter(QObject):
         self.put(review.summary)
         self._page.show_take(review, MotionSource(review.motion, self._words), self._settings.values.angles)
 
-    def _on_refused(self, error: StudioError) -> None:
-        self._page.show_refusal(self._wanted, error)
+    def _on_refused(self, folder: Path, error: StudioError) -> None:
+        if folder == self._wanted:
+            self._page.show_refusal(folder, error)
+            self.is_current = False  # it may be gone, and others with it
 
     def _on_library(self, takes: Sequence[TakeSummary]) -> None:
         self._page.takes.set_loading(False)

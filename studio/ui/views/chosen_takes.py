@@ -11,6 +11,7 @@ from studio.ui.icons import icon
 from studio.ui.models.take_list_model import length
 from studio.ui.theme import GAP, GAP_WIDE, Theme
 from studio.ui.views.elided import ElidedLabel
+from studio.ui.views.take_row import numbered
 
 CROSS = 16  # px
 MOST_ROWS = 100  # more are counted: nobody reads them one by one
@@ -93,7 +94,7 @@ class ChosenTakes(QFrame):
     def _row(self, take: TakeSummary) -> QWidget:
         row = QWidget(self)
         name = ElidedLabel(row)
-        name.set_words(take.name)
+        name.set_words(numbered(take))
         name.setProperty("role", "strong")
         facts = ElidedLabel(row)
         bad = self.tr("✖ bad take") if take.verdict == "bad" else ""

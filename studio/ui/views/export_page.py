@@ -83,6 +83,7 @@ class ExportPage(QWidget):
 
     def show_refusal(self, error: StudioError) -> None:
         """Show why nothing was written."""
+        self._confirmed = ()
         self._set_busy(on=False)
         self.result.show_refusal(error)
 
@@ -288,6 +289,8 @@ class ExportPage(QWidget):
         said = words.format(rows=f"{rows:,}", size=self._size(size))
         if len(found) > 1:
             said = self.tr("{n} files from {time}: {what}").format(n=len(found), time=length(seconds), what=said)
+        if found:
+            said = self.tr("{what}: the whole take, also what came before R").format(what=said)
         self._estimate.setText(said if found else self.tr("Choose a take first."))
 
     def _size(self, size: float) -> str:
@@ -311,14 +314,18 @@ class ExportPage(QWidget):
             part.setEnabled(not on)
 
     def _on_card(self, card: FormatCard) -> None:
-        self.result.hide()
+        self._forget_answer()
         self.choice.set_format(card.key)
 
     def _on_rate(self) -> None:
-        self.result.hide()
+        self._forget_answer()
         self.choice.set_rate(self.rate.currentData() or None)
 
     def _on_typed(self) -> None:
+        self._forget_answer()
+
+    def _forget_answer(self) -> None:
+        """Something else is to be exported: what came of the last order, and what was agreed to, is over."""
         self.result.hide()
         self._confirmed = ()
 
@@ -334,6 +341,7 @@ class ExportPage(QWidget):
         if replaced != self._confirmed:  # said beside the button; the next press means it
             self._confirmed = replaced
             if replaced:
+                self.result.hide()
                 self.start.setText(self.tr("Replace and export"))
                 self.start.setAccessibleName(self.start.text())
                 return

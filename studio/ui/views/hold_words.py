@@ -171,7 +171,9 @@ class HoldWords(QObject):
             return message.do if outcome.moved else f"{message.why} {message.do}"
         unknown = tuple(limb.place for limb in outcome.limbs if limb.source == "unknown")
         if unknown:
-            text = self.tr("Heading unknown: {limbs}. These limbs are left out; repeat the bow to include them.")
+            text = self.tr("Which way they face is not known: {limbs}. Repeat the bow to include them.")
+            if model.hold.next_pose is not None:
+                text = self.tr("Which way they face is not known yet: {limbs}. The bow tells; hold it next.")
             return text.format(limbs=self.places(unknown))
         text = self.tr("Held within {worst:.1f}°. Compare the figure with the person, then accept.")
         if model.hold.next_pose is not None:

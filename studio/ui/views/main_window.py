@@ -22,7 +22,7 @@ from studio.ui.views.sheet import Sheet
 FRAME = 4  # px around everything; painted while recording, kept free otherwise so that nothing moves
 LEAST = (1024, 640)  # px
 
-_CLOSE, _PERSON = "close", "person"
+_CLOSE, _PERSON, _EXPORT = "close", "person", "export"
 
 
 class MainWindow(QWidget):
@@ -44,6 +44,8 @@ class MainWindow(QWidget):
     """The window is to be closed: answer with ``close_now`` or ``ask_before_close``."""
     close_confirmed = Signal()
     """Stop and save, then close."""
+    export_end_confirmed = Signal()
+    """Close although files are still being written."""
     close_refused = Signal()
     """Keep recording."""
 
@@ -131,6 +133,16 @@ class MainWindow(QWidget):
             self.tr("Closing now stops it. What was recorded is saved and checked first."),
             self.tr("Stop and save"),
             self.tr("Keep recording"),
+        )
+
+    def ask_before_ending_export(self) -> None:
+        """Ask, once, whether to end an export that is under way."""
+        self.sheet.ask(
+            _EXPORT,
+            self.tr("Files are still being written."),
+            self.tr("Closing now leaves out those that are not done. The takes are safe."),
+            self.tr("Stop and close"),
+            self.tr("Keep exporting"),
         )
 
     def close_now(self) -> None:
@@ -297,6 +309,8 @@ class MainWindow(QWidget):
     def _on_answered(self, question: str, line: str) -> None:
         if question == _CLOSE:
             self.close_confirmed.emit()
+        elif question == _EXPORT:
+            self.export_end_confirmed.emit()
         else:
             self.person_created.emit(line)
 

@@ -54,6 +54,8 @@ class TakeList(QFrame):
         self._nothing = QLabel(self)
         self.show_all = QPushButton(self.tr("Show all takes"), self)
         self._chosen: Path | None = None
+        self._wanted: dict[Path, str] = {}
+        """Verdicts that were asked for and not answered yet."""
         self._loading = False
         self._build()
         self._wire()
@@ -182,6 +184,8 @@ class TakeList(QFrame):
         self.search.textChanged.connect(self.model.set_filter)
         self.starred.toggled.connect(self.model.set_starred_only)
         self.model.modelReset.connect(self._on_reset)
+        self.model.dataChanged.connect(self._wanted.clear)
+        self.view.setProperty("gives_way", True)  # Space and the sideways arrows play the take that was chosen here
         self.model.rowsRemoved.connect(self._refresh)
         self.model.dataChanged.connect(self._refresh)
         self.model.rename_asked.connect(self._on_rename)
@@ -221,7 +225,10 @@ class TakeList(QFrame):
     def _toggle(self, verdict: str) -> None:
         summary = self.current()
         if summary is not None and summary.refusal is None:
-            self.verdict_requested.emit(summary.folder, "none" if summary.verdict == verdict else verdict)
+            shown = self._wanted.get(summary.folder, summary.verdict)
+            wanted = "none" if shown == verdict else verdict
+            self._wanted[summary.folder] = wanted  # until the answer comes: a second press means the other way
+            self.verdict_requested.emit(summary.folder, wanted)
         self._refresh()
 
     def _on_reset(self) -> None:
