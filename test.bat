@@ -32,7 +32,9 @@ if defined KINETAG_MARKERS (
     call :stage ruff "%KINETAG_PYTHON%" -m ruff check
     call :stage mypy "%KINETAG_PYTHON%" -m mypy
     call :stage import-linter "%KINETAG_VENV%\Scripts\lint-imports.exe" --no-logo
-    call :stage pytest "%KINETAG_PYTHON%" -m pytest
+    rem Journeys run in real time: nothing else runs beside them.
+    call :stage pytest "%KINETAG_PYTHON%" -m pytest -n auto --ignore=tests\journeys
+    call :stage journeys "%KINETAG_PYTHON%" -m pytest tests\journeys
 )
 if not defined KINETAG_FAILED exit /b 0
 echo Failed:%KINETAG_FAILED% 1>&2

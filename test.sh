@@ -87,6 +87,8 @@ else
     stage ruff tool ruff check
     stage mypy tool mypy
     stage import-linter "$venv/bin/lint-imports" --no-logo
-    stage pytest tool pytest
+    # Journeys run in real time, some at a thousand packets a second: nothing else runs beside them.
+    stage pytest tool pytest -n auto --ignore=tests/journeys
+    stage journeys tool pytest tests/journeys
 fi
 [ -z "$failed" ] || stop "Failed:$failed"

@@ -193,7 +193,13 @@ def test_words_after_the_name_reach_the_studio_unchanged(computer: Computer):
     assert run.returncode == 0
     assert (run.stdout, run.stderr) == ("", "")
     assert computer.log.read_text(encoding="utf-8").splitlines() == [
-        "-m", "studio", "record", "--source", "synthetic:walk?seed=1&tags=15", "--library", "my takes",
+        "-m",
+        "studio",
+        "record",
+        "--source",
+        "synthetic:walk?seed=1&tags=15",
+        "--library",
+        "my takes",
     ]
 
 
@@ -216,9 +222,16 @@ def test_all_checks_run_and_a_failure_is_not_hidden_by_the_next_success(computer
     run = computer.run("test.sh")
 
     assert run.returncode == 1
-    assert computer.log.read_text(encoding="utf-8").split() == ["-m", "ruff", "check", "-m", "mypy", "-m", "pytest"]
+    assert computer.log.read_text(encoding="utf-8").split() == [
+        "-m", "ruff", "check", "-m", "mypy", "-m", "pytest", "-n", "auto", "--ignore=tests/journeys",
+        "-m", "pytest", "tests/journeys",
+    ]  # fmt: skip
     assert re.findall(r"== (.+): (passed|FAILED) in \d+ s", run.stderr) == [
-        ("ruff", "passed"), ("mypy", "passed"), ("import-linter", "FAILED"), ("pytest", "passed"),
+        ("ruff", "passed"),
+        ("mypy", "passed"),
+        ("import-linter", "FAILED"),
+        ("pytest", "passed"),
+        ("journeys", "passed"),
     ]
     assert run.stderr.endswith("Failed: import-linter\n")
 
@@ -233,7 +246,12 @@ def test_kinds_of_tests_are_chosen_and_other_words_go_to_pytest(computer: Comput
     assert computer.run("test.sh", "--long", "-k", "walk and run", "--peers").returncode == 0
     assert computer.log.read_text(encoding="utf-8").splitlines() == [
         "tests/peers/environments.py",
-        "-m", "pytest", "-m", "long or peers", "-k", "walk and run",
+        "-m",
+        "pytest",
+        "-m",
+        "long or peers",
+        "-k",
+        "walk and run",
     ]
 
 
